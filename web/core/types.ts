@@ -1,0 +1,85 @@
+/** Data shapes that every room of the house shares. Units: seconds, metres, radians; quaternions are x y z w. */
+
+/** A dance. */
+export interface Motion {
+  /** Frames per second. */
+  fps: number;
+  frames: number;
+  /** Pelvis position, frames x 3, metres, Y up, floor at y = 0. */
+  root: Float32Array;
+  /** Local joint rotations, frames x 24 x 4 (x y z w); joint 0 is the world orientation. */
+  quaternions: Float32Array;
+}
+
+/** One frame of a dance. */
+export interface FramePose {
+  /** Pelvis position, 3 numbers, metres. */
+  root: ArrayLike<number>;
+  /** 24 x 4 (x y z w). */
+  quaternions: ArrayLike<number>;
+}
+
+/** Music features at spec.fps; columns in the order of spec.features.names. */
+export interface Features {
+  fps: number;
+  names: readonly string[];
+  frames: number;
+  /** frames x 15, row-major. */
+  data: Float32Array;
+}
+
+/** Beats of a song. */
+export interface BeatGrid {
+  /** Beats per minute. */
+  tempo: number;
+  beatsPerBar: 3 | 4;
+  /** Seconds, ascending. */
+  beats: number[];
+  /** Seconds, a subset of beats. */
+  downbeats: number[];
+}
+
+/** A pose that the dance must pass through. */
+export interface KeyPose {
+  id: string;
+  /** Seconds from the start of the song. */
+  time: number;
+  /** 24 x 3 axis-angle, radians, SMPL joint order; joint 0 is the world orientation. */
+  rotations: number[];
+  name?: string;
+}
+
+/** Lowest and highest sample of each bucket of a song, for drawing it. */
+export interface Waveform {
+  /** Buckets per second. */
+  rate: number;
+  min: Float32Array;
+  max: Float32Array;
+}
+
+/** A named pose of the library (public/library/poses.json). */
+export interface LibraryPose {
+  id: string;
+  name: string;
+  group: string;
+  /** 24 x 3 axis-angle, radians. */
+  rotations: number[];
+}
+
+/**
+ * A starting clip (public/library/seeds.json): poses on a beat grid, joined by a smooth curve, so that it can be played at any tempo.
+ * It loops: the pose at beat `beats` equals the pose at beat 0.
+ */
+export interface SeedClip {
+  id: string;
+  name: string;
+  description: string;
+  /** Length in beats. */
+  beats: number;
+  /** Poses per beat. */
+  rate: number;
+  /** beats x rate poses, each 24 x 3 axis-angle, radians. */
+  poses: number[][];
+  /** beats x rate pelvis positions x y z, metres (x, z start at 0; feet on the floor). */
+  root: [number, number, number][];
+}

@@ -1,0 +1,61 @@
+/** Messages between the page and its workers: one typed union a direction. Every message carries the id of its job. */
+import type { BeatGrid, Features, KeyPose, Motion, SeedClip, Waveform } from '../core/types';
+
+export type Backend = 'webgpu' | 'wasm';
+
+/** Page -> analyse worker. A song arrives in chunks so that no copy blocks the page. */
+export type AnalyseRequest =
+  | { type: 'begin'; job: number; sampleRate: number; samples: number }
+  /** Mono samples that follow those sent before; the array is transferred. */
+  | { type: 'chunk'; job: number; pcm: Float32Array }
+  | { type: 'cancel'; job: number };
+
+/** Analyse worker -> page. */
+export type AnalyseReply =
+  | { type: 'progress'; job: number; fraction: number; waveform?: Waveform }
+  /** Features of the first seconds, while the rest is worked on. */
+  | { type: 'head'; job: number; features: Features; grid: BeatGrid }
+  | { type: 'result'; job: number; features: Features; grid: BeatGrid; waveform: Waveform; milliseconds: number }
+  | { type: 'cancelled'; job: number }
+  | { type: 'error'; job: number; message: string };
+
+export interface GenerateOptions {
+  /** 0 = the network alone, 1 = key poses are hit exactly. */
+  keyStrength: number;
+  /** 0..1: how far the dance may stray from the plain one. */
+  variation: number;
+  /** Integer; the same seed always gives the same dance. */
+  seed: number;
+  /** Foot contact clean-up. */
+  cleanFeet: boolean;
+}
+
+/** Page -> generate worker. */
+export type GenerateRequest =
+  /** Loads onnxruntime and the model, and checks the backend with one golden window. `backend` forces one. */
+  | { type: 'load'; job: number; baseUrl: string; backend?: Backend; threads?: number }
+  | {
+      type: 'generate';
+      job: number;
+      features: Features;
+      grid: BeatGrid;
+      /** ceil(duration x fps). */
+      frames: number;
+      keyPoses: KeyPose[];
+      seedClip: SeedClip;
+      options: GenerateOptions;
+      /** Frames [from, to) are made anew; the rest stays as in `previous`. */
+      range?: { from: number; to: number };
+      previous?: Motion;
+    }
+  | { type: 'cancel'; job: number };
+
+/** Generate worker -> page. */
+export type GenerateReply =
+  | { type: 'loading'; job: number; fraction: number; bytes: number; totalBytes: number; cached: boolean }
+  | { type: 'loaded'; job: number; backend: Backend; threads: number; model: string; reason: string }
+  /** The dance so far: frames [0, motion.frames) can be played; earlier frames may be repeated in later messages. */
+  | { type: 'partial'; job: number; motion: Motion; fraction: number; windows: number }
+  | { type: 'result'; job: number; motion: Motion; backend: Backend; model: string; windows: number; milliseconds: number }
+  | { type: 'cancelled'; job: number }
+  | { type: 'error'; job: number; message: string };
