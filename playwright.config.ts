@@ -1,7 +1,6 @@
-import { existsSync } from 'node:fs';
 import { defineConfig } from '@playwright/test';
+import { CHROMIUM_FLAGS, installedChromium } from './tests/chromium.mjs';
 
-const installed = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find((path) => existsSync(path));
 const port = 4179;
 
 export default defineConfig({
@@ -16,17 +15,8 @@ export default defineConfig({
     baseURL: `http://127.0.0.1:${port}/`,
     viewport: { width: 1440, height: 900 },
     launchOptions: {
-      executablePath: process.env.CHROMIUM ?? installed,
-      args: [
-        '--no-sandbox',
-        '--disable-background-networking',
-        '--disable-component-update',
-        '--disable-sync',
-        '--no-first-run',
-        '--disable-quic',
-        '--autoplay-policy=no-user-gesture-required',
-        '--enable-unsafe-swiftshader',
-      ],
+      executablePath: installedChromium(),
+      args: [...CHROMIUM_FLAGS, '--autoplay-policy=no-user-gesture-required', '--enable-unsafe-swiftshader'],
     },
   },
   webServer: {

@@ -19,6 +19,7 @@ export type AnalyseReply =
   | { type: 'cancelled'; job: number }
   | { type: 'error'; job: number; message: string };
 
+/** The dials of a generation. */
 export interface GenerateOptions {
   /** 0 = the network alone, 1 = key poses are hit exactly. */
   keyStrength: number;
@@ -56,6 +57,14 @@ export type GenerateReply =
   | { type: 'loaded'; job: number; backend: Backend; threads: number; model: string; reason: string }
   /** The dance so far: frames [0, motion.frames) can be played; earlier frames may be repeated in later messages. */
   | { type: 'partial'; job: number; motion: Motion; fraction: number; windows: number }
-  | { type: 'result'; job: number; motion: Motion; backend: Backend; model: string; windows: number; milliseconds: number }
+  | {
+      type: 'result';
+      job: number;
+      motion: Motion;
+      backend: Backend;
+      model: string;
+      windows: number;
+      milliseconds: number;
+    }
   | { type: 'cancelled'; job: number }
   | { type: 'error'; job: number; message: string };
