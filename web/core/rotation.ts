@@ -1,0 +1,201 @@
+/**
+ * Rotations: axis-angle (radians), unit quaternions x y z w, and 6D = column 0 then column 1 of the matrix (Zhou et al. 2019,
+ * "On the continuity of rotation representations in neural networks").
+ * Every function reads any array-like, writes `out` when it is given (it may be one of the inputs) and returns it.
+ */
+
+export type Numbers = ArrayLike<number>;
+export type Writable = number[] | Float32Array | Float64Array;
+
+const JOINTS_IN_POSE = 24;
+
+/** Same rotation, unit length, with the sign that makes w >= 0 (at w = 0 the first non-zero of x, y, z is positive). */
+export function canonicalQuaternion(q: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+  const [x, y, z, w] = [q[0], q[1], q[2], q[3]];
+  const length = Math.hypot(x, y, z, w);
+  if (!(length > 1e-12)) return set(out, 0, 0, 0, 1);
+  const negative = w < 0 || (w === 0 && (x < 0 || (x === 0 && (y < 0 || (y === 0 && z < 0)))));
+  const scale = (negative ? -1 : 1) / length;
+  return set(out, x * scale, y * scale, z * scale, w * scale);
+}
+
+function set(out: Writable, x: number, y: number, z: number, w: number): Writable {
+  // `+ 0` turns a negative zero into zero, so that equal rotations are equal numbers.
+  out[0] = x + 0;
+  out[1] = y + 0;
+  out[2] = z + 0;
+  out[3] = w + 0;
+  return out;
+}
+
+/** Rotation vector of any length (radians) to a canonical quaternion. */
+export function axisAngleToQuaternion(aa: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+  const [x, y, z] = [aa[0], aa[1], aa[2]];
+  const angle = Math.hypot(x, y, z);
+  // Below 1e-4 rad the series is exact to double precision and needs no division by the angle.
+  const scale = angle < 1e-4 ? 0.5 - (angle * angle) / 48 : Math.sin(angle / 2) / angle;
+  return canonicalQuaternion([x * scale, y * scale, z * scale, Math.cos(angle / 2)], out);
+}
+
+/** Quaternion (any sign) to the shortest rotation vector, 0..pi radians long. */
+export function quaternionToAxisAngle(q: Numbers, out: Writable = [0, 0, 0]): Writable {
+  const [x, y, z, w] = canonicalQuaternion(q);
+  const sine = Math.hypot(x, y, z);
+  const scale = sine < 1e-9 ? 2 / w : (2 * Math.atan2(sine, w)) / sine;
+  out[0] = x * scale;
+  out[1] = y * scale;
+  out[2] = z * scale;
+  return out;
+}
+
+/** Columns 0 and 1 of the rotation matrix of a unit quaternion: 6 numbers. */
+export function quaternionToSixD(q: Numbers, out: Writable = [0, 0, 0, 0, 0, 0]): Writable {
+  const [x, y, z, w] = [q[0], q[1], q[2], q[3]];
+  out[0] = 1 - 2 * (y * y + z * z);
+  out[1] = 2 * (x * y + w * z);
+  out[2] = 2 * (x * z - w * y);
+  out[3] = 2 * (x * y - w * z);
+  out[4] = 1 - 2 * (x * x + z * z);
+  out[5] = 2 * (y * z + w * x);
+  return out;
+}
+
+/**
+ * Nearest proper rotation by Gram-Schmidt (Zhou et al. 2019, eq. 15), as a canonical quaternion.
+ * Columns that are zero, parallel or not finite still give a rotation, so that a bad network output never becomes NaN.
+ */
+export function sixDToQuaternion(sixD: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+  const a = unit([sixD[0], sixD[1], sixD[2]], [1, 0, 0]);
+  const along = a[0] * sixD[3] + a[1] * sixD[4] + a[2] * sixD[5];
+  const b = unit(
+    [sixD[3] - along * a[0], sixD[4] - along * a[1], sixD[5] - along * a[2]],
+    // Any direction across `a` will do: start from the axis that `a` is furthest from.
+    across(a),
+  );
+  const c = cross(a, b);
+  return matrixToQuaternion([a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2]], out);
+}
+
+function unit(v: number[], fallback: number[]): number[] {
+  const length = Math.hypot(v[0], v[1], v[2]);
+  return length > 1e-8 && Number.isFinite(length) ? [v[0] / length, v[1] / length, v[2] / length] : fallback;
+}
+
+function cross(a: number[], b: number[]): number[] {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+function across(a: number[]): number[] {
+  const axis = Math.abs(a[1]) < 0.9 ? [0, 1, 0] : [0, 0, 1];
+  const side = cross(axis, a);
+  const length = Math.hypot(side[0], side[1], side[2]);
+  return cross(a, [side[0] / length, side[1] / length, side[2] / length]);
+}
+
+/** Row-major 3 x 3 rotation matrix to a canonical quaternion, dividing by the largest component (Shepperd 1978). */
+export function matrixToQuaternion(m: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+  const trace = m[0] + m[4] + m[8];
+  let q: number[];
+  if (trace > Math.max(m[0], m[4], m[8])) q = [m[7] - m[5], m[2] - m[6], m[3] - m[1], 1 + trace];
+  else if (m[0] > m[4] && m[0] > m[8]) q = [1 + m[0] - m[4] - m[8], m[1] + m[3], m[2] + m[6], m[7] - m[5]];
+  else if (m[4] > m[8]) q = [m[1] + m[3], 1 - m[0] + m[4] - m[8], m[5] + m[7], m[2] - m[6]];
+  else q = [m[2] + m[6], m[5] + m[7], 1 - m[0] - m[4] + m[8], m[3] - m[1]];
+  return canonicalQuaternion(q, out);
+}
+
+/** Hamilton product: `multiply(a, b)` turns by b first, then by a. */
+export function multiply(a: Numbers, b: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+  const [ax, ay, az, aw] = [a[0], a[1], a[2], a[3]];
+  const [bx, by, bz, bw] = [b[0], b[1], b[2], b[3]];
+  out[0] = aw * bx + ax * bw + ay * bz - az * by;
+  out[1] = aw * by - ax * bz + ay * bw + az * bx;
+  out[2] = aw * bz + ax * by - ay * bx + az * bw;
+  out[3] = aw * bw - ax * bx - ay * by - az * bz;
+  return out;
+}
+
+/** The inverse of a unit quaternion. */
+export function conjugate(q: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+  out[0] = -q[0];
+  out[1] = -q[1];
+  out[2] = -q[2];
+  out[3] = q[3];
+  return out;
+}
+
+/** A vector turned by a unit quaternion. */
+export function rotateVector(q: Numbers, v: Numbers, out: Writable = [0, 0, 0]): Writable {
+  const [x, y, z, w] = [q[0], q[1], q[2], q[3]];
+  const [vx, vy, vz] = [v[0], v[1], v[2]];
+  const tx = 2 * (y * vz - z * vy);
+  const ty = 2 * (z * vx - x * vz);
+  const tz = 2 * (x * vy - y * vx);
+  out[0] = vx + w * tx + y * tz - z * ty;
+  out[1] = vy + w * ty + z * tx - x * tz;
+  out[2] = vz + w * tz + x * ty - y * tx;
+  return out;
+}
+
+/** Shortest great-circle interpolation between unit quaternions; `t` = 0 gives a, 1 gives b. */
+export function slerp(a: Numbers, b: Numbers, t: number, out: Writable = [0, 0, 0, 1]): Writable {
+  const dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+  const cosine = Math.min(Math.abs(dot), 1);
+  let from = 1 - t;
+  let to = t;
+  // Within 0.06 degrees the chord and the arc agree to 1e-7, and the sine would be too small to divide by.
+  if (cosine < 0.9999995) {
+    const angle = Math.acos(cosine);
+    from = Math.sin(from * angle) / Math.sin(angle);
+    to = Math.sin(to * angle) / Math.sin(angle);
+  }
+  if (dot < 0) to = -to;
+  const [x, y, z, w] = [0, 1, 2, 3].map((i) => from * a[i] + to * b[i]);
+  const scale = 1 / (Math.hypot(x, y, z, w) || 1);
+  return set(out, x * scale, y * scale, z * scale, w * scale);
+}
+
+/** Angle of the rotation between two unit quaternions, 0..pi radians, exact near 0 too. */
+export function angleBetween(a: Numbers, b: Numbers): number {
+  const [x, y, z, w] = multiply(conjugate(a), b);
+  return 2 * Math.atan2(Math.hypot(x, y, z), Math.abs(w));
+}
+
+/** A pose of 24 x 3 axis-angle numbers as 24 x 4 quaternions. */
+export function poseToQuaternions(
+  rotations: Numbers,
+  out: Float32Array = new Float32Array(JOINTS_IN_POSE * 4),
+): Float32Array {
+  const q = [0, 0, 0, 1];
+  for (let joint = 0; joint < JOINTS_IN_POSE; joint++) {
+    const i = joint * 3;
+    axisAngleToQuaternion([rotations[i], rotations[i + 1], rotations[i + 2]], q);
+    out.set(q, joint * 4);
+  }
+  return out;
+}
+
+/** A pose of 24 x 4 quaternions as 24 x 3 axis-angle numbers. */
+export function quaternionsToPose(quaternions: Numbers): number[] {
+  const pose: number[] = [];
+  const aa = [0, 0, 0];
+  for (let joint = 0; joint < JOINTS_IN_POSE; joint++) {
+    const i = joint * 4;
+    quaternionToAxisAngle([quaternions[i], quaternions[i + 1], quaternions[i + 2], quaternions[i + 3]], aa);
+    pose.push(aa[0], aa[1], aa[2]);
+  }
+  return pose;
+}
+
+/** 24 x 4 quaternions as 144 numbers, 6 a joint. */
+export function quaternionsToSixD(
+  quaternions: Numbers,
+  out: Float32Array = new Float32Array(JOINTS_IN_POSE * 6),
+): Float32Array {
+  const sixD = [0, 0, 0, 0, 0, 0];
+  for (let joint = 0; joint < JOINTS_IN_POSE; joint++) {
+    const i = joint * 4;
+    quaternionToSixD([quaternions[i], quaternions[i + 1], quaternions[i + 2], quaternions[i + 3]], sixD);
+    out.set(sixD, joint * 6);
+  }
+  return out;
+}
