@@ -1,0 +1,356 @@
+/** The clock of the house: what `time()` says is what is heard, and everything that moves asks it. */
+import { HeardClock } from './heard-clock';
+
+/** A stretch of the song, seconds. */
+export interface LoopRange {
+  start: number;
+  end: number;
+}
+
+/** From `from` on (seconds of its clock) the song runs from `position` at `rate`. */
+interface Segment {
+  clock: 'audio' | 'timer';
+  from: number;
+  position: number;
+  rate: number;
+  loop: LoopRange | null;
+}
+
+/** Makes an AudioContext; tests give their own. */
+export type ContextFactory = () => AudioContext;
+
+/** Sources start this much in the future, so that the start is exact to the sample. */
+const START_DELAY = 0.02;
+/** Fade in and out at every start and stop, so that seeks do not click. */
+const FADE = 0.006;
+/** Slowest and fastest playback. */
+export const SPEED_RANGE = { min: 0.25, max: 1.5 } as const;
+/** The shortest loop, seconds. */
+export const MIN_LOOP = 0.1;
+
+/**
+ * Plays one decoded buffer and tells where in it the listener is.
+ *
+ * While the browser keeps sound locked (no click yet) or the player is muted from the start, it runs on the timer; the moment sound may
+ * run, it starts at the place where the timer will be when the first sample is heard, so the handover has no jump.
+ */
+export class Player {
+  readonly #createContext: ContextFactory;
+  readonly #now: () => number;
+  readonly #heard = new HeardClock();
+  readonly #listeners = new Set<() => void>();
+  #context: AudioContext | null = null;
+  #master: GainNode | null = null;
+  #source: { node: AudioBufferSourceNode; fade: GainNode } | null = null;
+  #buffer: AudioBuffer | null = null;
+  #duration = 0;
+  #playing = false;
+  #position = 0;
+  #segments: Segment[] = [];
+  #speed = 1;
+  #loop: LoopRange | null = null;
+  #volume = 0.9;
+  #muted = false;
+
+  /**
+   * @param createContext - Makes the AudioContext, called when sound is first wanted.
+   * @param now - Milliseconds of a steady clock.
+   */
+  constructor(createContext: ContextFactory = () => new AudioContext(), now: () => number = () => performance.now()) {
+    this.#createContext = createContext;
+    this.#now = now;
+  }
+
+  /** Seconds. */
+  get duration(): number {
+    return this.#duration;
+  }
+  /** True while the song runs. */
+  get playing(): boolean {
+    return this.#playing;
+  }
+  /** Playback rate, 1 = as recorded. */
+  get speed(): number {
+    return this.#speed;
+  }
+  /** The repeated stretch, or null. */
+  get loop(): LoopRange | null {
+    return this.#loop;
+  }
+  /** 0..1. */
+  get volume(): number {
+    return this.#volume;
+  }
+  /** True when no sound is wanted. */
+  get muted(): boolean {
+    return this.#muted;
+  }
+  /** Which clock drives the time now. */
+  get clock(): 'audio' | 'timer' {
+    return this.#audible() ? 'audio' : 'timer';
+  }
+
+  /** Calls back after every change of state (not of time). Returns the way to stop that. */
+  onChange(callback: () => void): () => void {
+    this.#listeners.add(callback);
+    return () => this.#listeners.delete(callback);
+  }
+
+  /** Takes another song; the former one stops. Without a buffer (still decoding) the timer can already run. */
+  load(duration: number, buffer: AudioBuffer | null): void {
+    this.#stopSource();
+    this.#playing = false;
+    this.#segments = [];
+    this.#position = 0;
+    this.#loop = null;
+    this.#duration = duration;
+    this.#buffer = buffer;
+    this.#changed();
+  }
+
+  /** Gives the sound of a song that already runs; it joins in without a jump. */
+  attach(buffer: AudioBuffer): void {
+    this.#buffer = buffer;
+    this.#duration = buffer.duration;
+    if (this.#playing) this.#resumeSound();
+    this.#changed();
+  }
+
+  /** Starts at the current position; from the end it starts again. */
+  play(): void {
+    if (this.#playing || this.#duration <= 0) return;
+    const start = this.#loop?.start ?? 0;
+    const end = this.#loop?.end ?? this.#duration;
+    if (this.#position >= end - 1e-3) this.#position = start;
+    this.#playing = true;
+    this.#startAt(this.#position);
+    this.#changed();
+  }
+
+  /** Stops where it is. */
+  pause(): void {
+    if (!this.#playing) return;
+    this.#position = this.time();
+    this.#playing = false;
+    this.#stopSource();
+    this.#segments = [];
+    this.#changed();
+  }
+
+  /** Goes to a time in seconds; outside the song it goes to the nearest end. */
+  seek(time: number): void {
+    const target = Math.min(Math.max(Number.isFinite(time) ? time : 0, 0), this.#duration);
+    this.#position = this.#loop && this.#playing && target >= this.#loop.end ? this.#loop.start : target;
+    if (this.#playing) this.#startAt(this.#position);
+    this.#changed();
+  }
+
+  /** Repeats a stretch, or with null plays through. */
+  setLoop(range: LoopRange | null): void {
+    if (range) {
+      const start = Math.max(0, Math.min(range.start, range.end));
+      const end = Math.min(this.#duration, Math.max(range.start, range.end));
+      if (end - start < MIN_LOOP) return;
+      range = { start, end };
+    }
+    const before = this.#loop;
+    if (before?.start === range?.start && before?.end === range?.end) return;
+    this.#loop = range;
+    if (this.#playing) {
+      if (range && this.time() >= range.end) this.#startAt(range.start);
+      else this.#continue();
+    }
+    this.#changed();
+  }
+
+  /** Playback rate within SPEED_RANGE; the pitch follows, as on a record player. */
+  setSpeed(speed: number): void {
+    if (!Number.isFinite(speed)) return;
+    this.#speed = Math.min(Math.max(speed, SPEED_RANGE.min), SPEED_RANGE.max);
+    if (this.#playing) this.#continue();
+    this.#changed();
+  }
+
+  /** 0..1. */
+  setVolume(volume: number): void {
+    this.#volume = Math.min(Math.max(volume, 0), 1);
+    this.#applyGain();
+    this.#changed();
+  }
+
+  /** Turning sound on inside a click also unlocks it in browsers that ask for one. */
+  setMuted(muted: boolean): void {
+    this.#muted = muted;
+    this.#applyGain();
+    if (!muted) this.unlock();
+    this.#changed();
+  }
+
+  /** Opens the sound device; call it in a click. Does nothing while muted. */
+  unlock(): void {
+    if (this.#muted) return;
+    const context = this.#ensureContext();
+    if (context.state !== 'running') void context.resume().catch(() => undefined);
+    else if (this.#playing && !this.#source) this.#resumeSound();
+  }
+
+  /** Where in the song the listener is now, seconds. */
+  time(): number {
+    if (!this.#playing) return this.#position;
+    return this.#positionOf(this.#activeSegment());
+  }
+
+  /** Stops at the end of the song. Call it once a frame. */
+  tick(): void {
+    if (this.#playing && !this.#loop && this.time() >= this.#duration) this.pause();
+  }
+
+  /** Closes the sound device. */
+  dispose(): void {
+    this.pause();
+    this.#listeners.clear();
+    void this.#context?.close();
+    this.#context = null;
+  }
+
+  #activeSegment(): Segment {
+    for (let i = this.#segments.length - 1; i > 0; i -= 1) {
+      const segment = this.#segments[i];
+      if (this.#clockTime(segment.clock) >= segment.from) {
+        this.#segments.splice(0, i); // the listener has passed the ones before
+        return segment;
+      }
+    }
+    return this.#segments[0];
+  }
+
+  #clockTime(clock: Segment['clock']): number {
+    if (clock === 'timer' || !this.#context) return this.#now() / 1000;
+    return this.#heard.read(this.#context, this.#now());
+  }
+
+  #positionOf(segment: Segment, at = this.#clockTime(segment.clock)): number {
+    const position = segment.position + Math.max(0, at - segment.from) * segment.rate;
+    return Math.min(wrap(position, segment.position, segment.loop), this.#duration);
+  }
+
+  #audible(): boolean {
+    return this.#source !== null && this.#context?.state === 'running';
+  }
+
+  /** A fresh start at a position: what was heard before no longer counts. */
+  #startAt(position: number): void {
+    this.#stopSource();
+    if (!this.#muted) this.#ensureContext();
+    const context = this.#context;
+    if (context && this.#buffer && context.state === 'running') {
+      const from = context.currentTime + START_DELAY;
+      this.#segments = [this.#startSource(from, position)];
+      return;
+    }
+    this.#segments = [this.#timerSegment(position)];
+    if (context && !this.#muted) void context.resume().catch(() => undefined);
+  }
+
+  /** New speed or loop from where the sound is being rendered, so that the listener hears no jump. */
+  #continue(): void {
+    const context = this.#context;
+    const last = this.#segments.at(-1);
+    if (!last) return;
+    if (last.clock === 'audio' && context && this.#audible()) {
+      const from = context.currentTime + START_DELAY;
+      const position = this.#positionOf(last, from);
+      this.#stopSource(from);
+      this.#segments.push(
+        this.#startSource(from, this.#loop && position >= this.#loop.end ? this.#loop.start : position),
+      );
+    } else {
+      this.#segments = [this.#timerSegment(this.time())];
+    }
+  }
+
+  /** From the timer to the sound: the source starts where the timer will be when its first sample is heard. */
+  #resumeSound(): void {
+    const context = this.#context;
+    if (!this.#playing || !this.#buffer || !context || context.state !== 'running' || this.#source) return;
+    this.#heard.reset();
+    const timer = this.#segments.at(-1);
+    if (!timer) return;
+    const from = context.currentTime + START_DELAY;
+    const untilHeard = from - this.#clockTime('audio');
+    const position = this.#positionOf(timer, this.#clockTime('timer') + untilHeard);
+    this.#segments = [timer, this.#startSource(from, position)];
+  }
+
+  #timerSegment(position: number): Segment {
+    return { clock: 'timer', from: this.#now() / 1000, position, rate: this.#speed, loop: this.#loop };
+  }
+
+  #startSource(from: number, position: number): Segment {
+    const context = this.#context!;
+    const node = context.createBufferSource();
+    node.buffer = this.#buffer;
+    node.playbackRate.value = this.#speed;
+    if (this.#loop) {
+      node.loop = true;
+      node.loopStart = this.#loop.start;
+      node.loopEnd = this.#loop.end;
+    }
+    const fade = context.createGain();
+    fade.gain.setValueAtTime(0, from);
+    fade.gain.linearRampToValueAtTime(1, from + FADE);
+    node.connect(fade).connect(this.#master!);
+    node.start(from, Math.min(position, Math.max(0, this.#duration - 1e-3)));
+    this.#source = { node, fade };
+    return { clock: 'audio', from, position, rate: this.#speed, loop: this.#loop };
+  }
+
+  #stopSource(at = this.#context?.currentTime ?? 0): void {
+    const source = this.#source;
+    if (!source) return;
+    this.#source = null;
+    source.fade.gain.setValueAtTime(1, at);
+    source.fade.gain.linearRampToValueAtTime(0, at + FADE);
+    source.node.stop(at + FADE);
+    source.node.onended = () => source.fade.disconnect();
+  }
+
+  #ensureContext(): AudioContext {
+    if (this.#context) return this.#context;
+    const context = this.#createContext();
+    this.#context = context;
+    this.#master = context.createGain();
+    this.#master.connect(context.destination);
+    this.#applyGain();
+    context.addEventListener('statechange', () => this.#onStateChange());
+    return context;
+  }
+
+  #onStateChange(): void {
+    if (this.#context?.state === 'running') {
+      this.#resumeSound();
+    } else if (this.#playing && this.#source) {
+      // The device was taken away (a call, sleep): the dance goes on silently and the sound joins in again later.
+      const position = this.time();
+      this.#stopSource();
+      this.#heard.reset();
+      this.#segments = [this.#timerSegment(position)];
+    }
+    this.#changed();
+  }
+
+  #applyGain(): void {
+    if (!this.#master || !this.#context) return;
+    this.#master.gain.setTargetAtTime(this.#muted ? 0 : this.#volume ** 2, this.#context.currentTime, 0.015);
+  }
+
+  #changed(): void {
+    for (const listener of this.#listeners) listener();
+  }
+}
+
+/** Position inside a loop that was entered from `entry`: past the loop's end it goes on at its start. */
+function wrap(position: number, entry: number, loop: LoopRange | null): number {
+  if (!loop || entry >= loop.end || position < loop.end) return position;
+  return loop.start + ((position - loop.start) % (loop.end - loop.start));
+}
