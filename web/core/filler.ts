@@ -1,0 +1,207 @@
+/**
+ * Filler poses: poses of the starting clip on beats where no user key is near. A regression network freezes without keys; with these
+ * the stretches between the user's keys dance too. They are input to the network only: no dance is ever corrected to them.
+ */
+import { beatPhase, type BeatPhase } from './beat-phase';
+import type { FrameKey } from './correction';
+import { smoothstep, wrapAngle } from './interpolate';
+import { aboutY, headingOf } from './localframe';
+import { chooseWeighted, seededRandom, type Random } from './random';
+import {
+  angleBetween,
+  axisAngleToQuaternion,
+  multiply,
+  poseToQuaternions,
+  quaternionsToPose,
+  quaternionToAxisAngle,
+} from './rotation';
+import { seedSampler, type SeedSampler } from './seed';
+import { JOINT_COUNT, mirrorPose } from './skeleton';
+import { spec } from './spec';
+import type { BeatGrid, SeedClip } from './types';
+
+/** Gaps up to this long get no filler, seconds. */
+export const LONGEST_GAP = 1.5;
+/** A filler keeps at least this far from a user's key, seconds. */
+export const KEY_DISTANCE = 0.4;
+/** A body turns at most this fast between two keys' headings, radians a second. */
+const TURN_SPEED = 2.5;
+
+/** How to dance one bar of the clip. */
+interface BarStyle {
+  /** Clip beat of the bar's first beat. */
+  phase: number;
+  mirrored: boolean;
+  /** Scale of the movement around the clip's mean pose. */
+  amplitude: number;
+}
+
+/** What fillers are chosen for. */
+export interface FillerRequest {
+  clip: SeedClip;
+  grid: BeatGrid;
+  /** The user's keys on their frames, ascending. */
+  keys: readonly FrameKey[];
+  /** Frames [from, to) are filled. */
+  from: number;
+  to: number;
+  /** 0 = the clip in its own order .. 1 = bars shuffled, mirrored, larger and smaller. */
+  variation: number;
+  seed: number;
+}
+
+/**
+ * World heading over time: through the headings of the keys, turning smoothly in between.
+ * @param start where the curve begins, radians; by default frame 0, facing +Z
+ * @returns a function of the frame
+ */
+export function headingCurve(
+  keys: readonly FrameKey[],
+  start?: { frame: number; heading: number },
+): (frame: number) => number {
+  const headings = keys.map((key) => headingOf(key.quaternions));
+  if (!keys.length) return () => start?.heading ?? 0;
+  // A first key soon after the start sets the direction from the start: turning there at once would look like a mistake.
+  const opening = keys[0].frame < 2 * spec.fps ? headings[0] : 0;
+  const points = [start ?? { frame: 0, heading: opening }];
+  keys.forEach((key, i) => {
+    const before = points[points.length - 1].heading;
+    points.push({ frame: key.frame, heading: before + wrapAngle(headings[i] - before) });
+  });
+  return (frame) => {
+    const next = points.findIndex((point, i) => i > 0 && point.frame >= frame);
+    if (next < 0) return points[points.length - 1].heading;
+    const [a, b] = [points[next - 1], points[next]];
+    if (frame <= a.frame || a.frame === b.frame) return frame <= a.frame ? a.heading : b.heading;
+    // The turn happens around the middle of the gap, no slower than it must be: a body does not creep round for ten seconds.
+    const gap = b.frame - a.frame;
+    const turning = Math.min(gap, Math.max(spec.fps, (Math.abs(b.heading - a.heading) / TURN_SPEED) * spec.fps * 2));
+    const begin = a.frame + (gap - turning) / 2;
+    return a.heading + (b.heading - a.heading) * smoothstep((frame - begin) / turning);
+  };
+}
+
+/**
+ * Filler poses for frames [from, to): on beats, in gaps longer than LONGEST_GAP, at least KEY_DISTANCE from every key.
+ * @param heading world heading at a frame, radians
+ * @returns ascending; the same request gives the same fillers
+ */
+export function fillerPoses(request: FillerRequest, heading: (frame: number) => number): FrameKey[] {
+  const { keys, from, to } = request;
+  const { fps } = spec;
+  const phase = beatPhase(request.grid);
+  const dancer = barDancer(request, phase);
+  const borders = [from - 1, ...keys.map((key) => key.frame).filter((frame) => frame >= from && frame < to), to];
+  const fillers: FrameKey[] = [];
+  for (let i = 0; i + 1 < borders.length; i++) {
+    const [left, right] = [borders[i], borders[i + 1]];
+    if (right - left <= LONGEST_GAP * fps && i + 2 < borders.length) continue;
+    // The start of the dance and its end are no keys: a filler may be right beside them.
+    const clearLeft = i === 0 ? left + Math.round(KEY_DISTANCE * fps) : left + KEY_DISTANCE * fps;
+    const clearRight = i + 2 === borders.length ? right : right - KEY_DISTANCE * fps;
+    for (let beat = Math.ceil(phase.at(clearLeft / fps)); ; beat++) {
+      const frame = Math.round(phase.time(beat) * fps);
+      if (frame > clearRight || frame >= to) break;
+      if (frame < clearLeft || frame === fillers[fillers.length - 1]?.frame) continue;
+      fillers.push({ frame, quaternions: dancer(beat, heading(frame)) });
+    }
+  }
+  return fillers;
+}
+
+/** Poses of the clip by song beat, bar by bar in a style drawn for each bar. */
+function barDancer(request: FillerRequest, phase: BeatPhase): (beat: number, heading: number) => Float32Array {
+  const sampler = seedSampler(request.clip);
+  const mean = meanPose(request.clip);
+  const variation = Math.min(1, Math.max(0, request.variation));
+  const styles: BarStyle[] = [];
+  const firstBar = Math.floor(phase.at(0) / phase.perBar);
+  // Bars are drawn in order from the song's start, so that a range made anew gets the bars that the whole dance would have there.
+  const style = (bar: number): BarStyle => {
+    for (let next = firstBar + styles.length; next <= bar; next++) {
+      const random = seededRandom(request.seed * 7919 + next);
+      styles.push(drawStyle(sampler, phase.perBar, next, variation, random, styles[styles.length - 1]));
+    }
+    return styles[Math.max(0, bar - firstBar)];
+  };
+  const clipHeading = headingOf(mean);
+  return (beat, heading) => {
+    const bar = Math.floor(beat / phase.perBar);
+    return styledPose(sampler, mean, style(bar), beat - bar * phase.perBar, heading - clipHeading);
+  };
+}
+
+/** The style of a bar: straight on with probability 1 - variation, else one whose first pose is near where the bar before leads. */
+function drawStyle(
+  sampler: SeedSampler,
+  perBar: number,
+  bar: number,
+  variation: number,
+  random: Random,
+  before: BarStyle | undefined,
+): BarStyle {
+  const straight: BarStyle = {
+    phase: before ? before.phase + perBar : bar * perBar,
+    mirrored: before?.mirrored ?? false,
+    amplitude: 1,
+  };
+  const amplitude = 1 + variation * (random() - 0.4) * 0.5;
+  if (random() >= variation) return { ...straight, amplitude };
+  const options: BarStyle[] = [];
+  for (let first = 0; first < sampler.beats; first += perBar) {
+    for (const mirrored of [false, true]) options.push({ phase: first, mirrored, amplitude });
+  }
+  const leads = rawPose(sampler, straight, 0);
+  const weights = options.map((option) => Math.exp(-poseDistance(leads, rawPose(sampler, option, 0)) / 0.35));
+  return options[chooseWeighted(weights, random)];
+}
+
+function rawPose(sampler: SeedSampler, style: BarStyle, beat: number): Float32Array {
+  const pose = new Float32Array(JOINT_COUNT * 4);
+  sampler.sample(style.phase + beat, pose, new Float32Array(3));
+  return style.mirrored ? poseToQuaternions(mirrorPose(quaternionsToPose(pose))) : pose;
+}
+
+/** Mean angle between two poses' joints, radians. */
+function poseDistance(a: Float32Array, b: Float32Array): number {
+  let sum = 0;
+  for (let i = 0; i < a.length; i += 4) sum += angleBetween(a.subarray(i, i + 4), b.subarray(i, i + 4));
+  return sum / JOINT_COUNT;
+}
+
+function styledPose(
+  sampler: SeedSampler,
+  mean: Float32Array,
+  style: BarStyle,
+  beat: number,
+  turn: number,
+): Float32Array {
+  const pose = rawPose(sampler, style, beat);
+  const middle = style.mirrored ? poseToQuaternions(mirrorPose(quaternionsToPose(mean))) : mean;
+  for (let i = 4; i < pose.length; i += 4) {
+    const from = middle.subarray(i, i + 4);
+    const away = quaternionToAxisAngle(multiply([-from[0], -from[1], -from[2], from[3]], pose.subarray(i, i + 4)));
+    const scaled = axisAngleToQuaternion(Array.from(away, (v) => v * style.amplitude));
+    multiply(from, scaled, pose.subarray(i, i + 4));
+  }
+  multiply(aboutY(turn), pose.subarray(0, 4), pose.subarray(0, 4));
+  return pose;
+}
+
+/** Mean of a clip's poses: quaternion sums with aligned signs, normalised. */
+function meanPose(clip: SeedClip): Float32Array {
+  const poses = clip.poses.map((pose) => poseToQuaternions(pose));
+  const mean = new Float32Array(JOINT_COUNT * 4);
+  for (const pose of poses) {
+    for (let i = 0; i < mean.length; i += 4) {
+      let dot = 0;
+      for (let k = i; k < i + 4; k++) dot += pose[k] * poses[0][k];
+      for (let k = i; k < i + 4; k++) mean[k] += dot < 0 ? -pose[k] : pose[k];
+    }
+  }
+  for (let i = 0; i < mean.length; i += 4) {
+    const length = Math.hypot(mean[i], mean[i + 1], mean[i + 2], mean[i + 3]) || 1;
+    for (let k = i; k < i + 4; k++) mean[k] /= length;
+  }
+  return mean;
+}

@@ -1,0 +1,322 @@
+/**
+ * From features and key poses to a whole dance of any length: windows that overlap, each seeded by the dance so far, blended, moved
+ * through the exact keys and cleaned of sliding feet. The network itself is handed in, so this runs anywhere.
+ */
+import { cleanContacts, LOOKAHEAD, type ContactState } from './contact';
+import { correctToKeys, keysOnFrames, type FrameKey } from './correction';
+import { fillerPoses, headingCurve } from './filler';
+import { smoothstep } from './interpolate';
+import { aboutY, fromLocalRows, headingOf, localFrameAt } from './localframe';
+import { alignSigns, copyFrames, emptyMotion, sliceMotion } from './motion';
+import { multiply, rotateVector, slerp } from './rotation';
+import { seedMotion } from './seed';
+import { JOINT_COUNT } from './skeleton';
+import { spec } from './spec';
+import type { BeatGrid, Features, KeyPose, Motion, SeedClip } from './types';
+import { planWindows, windowInputs, type RunWindow, type WindowSpan } from './window-plan';
+
+export type { RunWindow, WindowInputs } from './window-plan';
+
+const POSE = JOINT_COUNT * 4;
+const { seedFrames } = spec.model;
+/** Frames that the network goes on past the song's end, so that the last beats have something to aim for. */
+const TAIL = spec.fps;
+/** A correction reaches this far from its key at most, frames; only what no later key can reach is cleaned and shown. */
+const SETTLE = Math.ceil(0.7 * spec.fps);
+/** Frames at each end of a range made anew over which it goes over into the dance around it. */
+const RANGE_BLEND = 12;
+
+/** What a dance is made from. */
+export interface GenerationRequest {
+  features: Features;
+  grid: BeatGrid;
+  /** ceil(duration x fps) */
+  frames: number;
+  keyPoses: readonly KeyPose[];
+  seedClip: SeedClip;
+  options: {
+    /** 0 = the network alone, 1 = keys are hit exactly. */
+    keyStrength: number;
+    /** 0..1 */
+    variation: number;
+    /** Integer; the same seed gives the same dance. */
+    seed: number;
+    cleanFeet: boolean;
+  };
+  /** Frames [from, to) are made anew; the rest stays as in `previous`. */
+  range?: { from: number; to: number };
+  previous?: Motion;
+}
+
+/** How the caller follows a generation. */
+export interface GenerationHooks {
+  /** The dance so far (frames [0, motion.frames) are final), the share that is done, and the windows run. */
+  onPartial?(motion: Motion, fraction: number, windows: number): void;
+  /** Checked between windows; the promise then rejects with the signal's reason. */
+  signal?: AbortSignal;
+}
+
+/**
+ * Makes a dance, or a range of one anew.
+ * @returns exactly `frames` frames
+ * @throws Error when the request makes no sense; the signal's reason when it is aborted
+ */
+export async function generateMotion(
+  request: GenerationRequest,
+  runWindow: RunWindow,
+  hooks: GenerationHooks = {},
+): Promise<Motion> {
+  check(request);
+  hooks.signal?.throwIfAborted();
+  return request.range && request.previous
+    ? generateRange(request, request.range, request.previous, runWindow, hooks)
+    : generateWhole(request, runWindow, hooks);
+}
+
+function check({ frames, features, range, previous }: GenerationRequest): void {
+  if (!Number.isInteger(frames) || frames < 1) throw new Error('There is no song to dance to: drop a song first.');
+  if (features.fps !== spec.fps || features.names.length !== spec.features.names.length) {
+    throw new Error('The song was analysed by another version of Posebeat: drop it again.');
+  }
+  if (!range) return;
+  if (!previous)
+    throw new Error('There is no dance yet whose range could be made anew: generate the whole dance first.');
+  if (previous.frames !== frames)
+    throw new Error('The dance and the song differ in length: generate the whole dance again.');
+  if (!(range.from >= 0 && range.to <= frames && range.to - range.from >= 2)) {
+    throw new Error('The range to make anew is empty or outside the song: select a longer one.');
+  }
+}
+
+/** All that is fed to the network: the user's keys and the fillers, ascending. */
+function networkKeys(
+  request: GenerationRequest,
+  keys: FrameKey[],
+  from: number,
+  to: number,
+  start?: { frame: number; heading: number },
+): FrameKey[] {
+  const { seedClip: clip, grid, options } = request;
+  const heading = headingCurve(keys, start);
+  const fillers = fillerPoses(
+    { clip, grid, keys, from, to, variation: options.variation, seed: options.seed },
+    heading,
+  );
+  return [...keys, ...fillers].sort((a, b) => a.frame - b.frame);
+}
+
+/** The clip on the grid for the frames before frame 0, facing where the dance begins. */
+function openingSeed(request: GenerationRequest, heading: number): Motion {
+  const seed = seedMotion(request.seedClip, request.grid, seedFrames, { startTime: -seedFrames / spec.fps });
+  const last = seedFrames - 1;
+  return turned(seed, heading - headingOf(seed.quaternions.subarray(last * POSE, last * POSE + 4)), last);
+}
+
+/** A dance turned about Y, with the root of one frame brought to x = z = 0. */
+function turned(motion: Motion, angle: number, pivot: number): Motion {
+  const turn = aboutY(angle);
+  const [x, z] = [motion.root[pivot * 3], motion.root[pivot * 3 + 2]];
+  for (let t = 0; t < motion.frames; t++) {
+    const pelvis = motion.quaternions.subarray(t * POSE, t * POSE + 4);
+    multiply(turn, pelvis, pelvis);
+    const root = motion.root.subarray(t * 3, t * 3 + 3);
+    rotateVector(turn, [root[0] - x, root[1], root[2] - z], root);
+  }
+  return motion;
+}
+
+async function generateWhole(
+  request: GenerationRequest,
+  runWindow: RunWindow,
+  hooks: GenerationHooks,
+): Promise<Motion> {
+  const { frames, options } = request;
+  const keys = keysOnFrames(request.keyPoses, spec.fps, frames);
+  const total = frames + TAIL;
+  const all = networkKeys(request, keys, 0, total);
+  const opening = openingSeed(request, headingCurve(keys)(0));
+  // `raw` is the network's own dance with the seed before it, so that every window finds its seed in one place.
+  const raw = emptyMotion(seedFrames + total);
+  copyFrames(opening, 0, seedFrames, raw, 0);
+  const plan = planWindows(
+    0,
+    total,
+    all.map((key) => key.frame),
+  );
+  const finish = finisher(request, keys);
+  for (let i = 0; i < plan.length; i++) {
+    await addWindow(plan[i], i > 0 ? plan[i - 1] : undefined, raw, seedFrames, request.features, all, runWindow);
+    hooks.signal?.throwIfAborted();
+    // A window that would begin after the song's end is not needed.
+    const last = i + 1 === plan.length || plan[i + 1].start >= frames;
+    const motion = finish(raw, last ? frames : plan[i + 1].start, last);
+    if (last) return motion;
+    if (motion.frames > 0) hooks.onPartial?.(motion, motion.frames / frames, i + 1);
+  }
+  throw new Error(`A dance of ${frames} frames with seed ${options.seed} got no windows.`);
+}
+
+/** Runs one window and blends it into the raw dance. `offset` is where frame 0 of the song lies in `raw`. */
+async function addWindow(
+  span: WindowSpan,
+  before: WindowSpan | undefined,
+  raw: Motion,
+  offset: number,
+  features: Features,
+  keys: readonly FrameKey[],
+  runWindow: RunWindow,
+): Promise<void> {
+  const start = span.start + offset;
+  const seed = sliceMotion(raw, start - seedFrames, start);
+  const frame = localFrameAt(seed, seedFrames - 1);
+  const inputs = windowInputs(span, features, seed, keys, frame);
+  const rows = await runWindow(inputs);
+  const wanted = inputs.frames * spec.model.motionSize;
+  if (rows.length !== wanted)
+    throw new Error(`The model gave ${rows.length} numbers for a window instead of ${wanted}.`);
+  const made = fromLocalRows(rows, frame);
+  const overlap = before ? before.end - span.start : 0;
+  blendInto(made, 0, raw, start, overlap);
+  copyFrames(made, overlap, made.frames, raw, start + overlap);
+}
+
+/** Goes over from what is in `target` to `source` within `frames` frames. */
+function blendInto(source: Motion, at: number, target: Motion, start: number, frames: number): void {
+  for (let i = 0; i < frames; i++) {
+    mixFrame(target, start + i, source, at + i, smoothstep((i + 1) / (frames + 1)));
+  }
+}
+
+/** Moves one frame of `target` by `share` towards a frame of `source`. */
+function mixFrame(target: Motion, t: number, source: Motion, s: number, share: number): void {
+  for (let k = 0; k < 3; k++) {
+    target.root[t * 3 + k] += share * (source.root[s * 3 + k] - target.root[t * 3 + k]);
+  }
+  for (let joint = 0; joint < JOINT_COUNT; joint++) {
+    const a = (t * JOINT_COUNT + joint) * 4;
+    const b = (s * JOINT_COUNT + joint) * 4;
+    const q = target.quaternions.subarray(a, a + 4);
+    slerp(q, source.quaternions.subarray(b, b + 4), share, q);
+  }
+}
+
+/**
+ * Turns the raw dance into the finished one, a stretch at a time: a finished frame never changes again, so what is shown while the rest
+ * is generated is what stays.
+ */
+function finisher(
+  request: GenerationRequest,
+  keys: FrameKey[],
+): (raw: Motion, stable: number, last: boolean) => Motion {
+  const { frames, options } = request;
+  const corrected = emptyMotion(frames);
+  const output = emptyMotion(frames);
+  let state: ContactState | undefined;
+  let done = 0;
+  return (raw, stable, last) => {
+    const readable = last ? frames : stable;
+    correctStretch(raw, corrected, done, readable, keys, options.keyStrength);
+    const to = last ? frames : Math.max(done, stable - SETTLE - LOOKAHEAD);
+    if (to > done) {
+      const view: Motion = { ...corrected, frames: last ? frames : stable - SETTLE };
+      if (options.cleanFeet) {
+        const exact = keys.map((key) => key.frame);
+        state = cleanContacts(view, output, done, to, { keys: exact, keyStrength: options.keyStrength, state });
+      } else {
+        copyFrames(corrected, done, to, output, done);
+      }
+      done = to;
+    }
+    return alignSigns(sliceMotion(output, 0, done));
+  };
+}
+
+/** Copies raw frames that are not finished yet and moves them through the keys; `raw` has the seed before frame 0. */
+function correctStretch(
+  raw: Motion,
+  corrected: Motion,
+  done: number,
+  readable: number,
+  keys: FrameKey[],
+  strength: number,
+): void {
+  // Keys reach SETTLE frames back and their residual is taken at their own frame, so start from where none is half applied.
+  const from = Math.max(0, done - 2 * SETTLE);
+  const part = emptyMotion(readable - from);
+  copyFrames(raw, from + seedFrames, readable + seedFrames, part, 0);
+  const inside = keys
+    .filter((key) => key.frame >= from && key.frame < readable)
+    .map((key) => ({ ...key, frame: key.frame - from }));
+  correctToKeys(part, inside, strength);
+  const keep = Math.max(0, done - from);
+  copyFrames(part, keep, part.frames, corrected, from + keep);
+}
+
+async function generateRange(
+  request: GenerationRequest,
+  range: { from: number; to: number },
+  previous: Motion,
+  runWindow: RunWindow,
+  hooks: GenerationHooks,
+): Promise<Motion> {
+  const { from, to } = range;
+  const { frames, options } = request;
+  if (from === 0 && to === frames) return generateWhole(request, runWindow, hooks);
+  const userKeys = keysOnFrames(request.keyPoses, spec.fps, frames).filter(
+    (key) => key.frame >= from && key.frame < to,
+  );
+  const pin: FrameKey[] =
+    to < frames ? [{ frame: to, quaternions: previous.quaternions.slice(to * POSE, (to + 1) * POSE) }] : [];
+  const keys = [...userKeys, ...pin];
+  const total = to < frames ? to + 1 : frames + TAIL;
+  const startHeading = headingOf(
+    previous.quaternions.subarray(Math.max(0, from - 1) * POSE, Math.max(0, from - 1) * POSE + 4),
+  );
+  const opening = openingSeed(request, startHeading);
+  const raw = emptyMotion(seedFrames + Math.max(total, frames));
+  copyFrames(opening, 0, seedFrames, raw, 0);
+  copyFrames(previous, 0, frames, raw, seedFrames);
+  // Near the song's start the seed would reach before it: what is missing is the opening clip.
+  const all = networkKeys(request, keys, from, total, from > 0 ? { frame: from, heading: startHeading } : undefined);
+  const plan = planWindows(
+    from,
+    total,
+    all.map((key) => key.frame),
+  );
+  for (let i = 0; i < plan.length; i++) {
+    await addWindow(plan[i], i > 0 ? plan[i - 1] : undefined, raw, seedFrames, request.features, all, runWindow);
+    hooks.signal?.throwIfAborted();
+    hooks.onPartial?.(previous, (plan[i].end - from) / (total - from), i + 1);
+  }
+  const made = sliceMotion(raw, seedFrames, seedFrames + frames);
+  joinRange(made, previous, from, to);
+  correctToKeys(made, userKeys, options.keyStrength);
+  const output = sliceMotion(previous, 0, frames);
+  if (options.cleanFeet) {
+    const exact = userKeys.map((key) => key.frame);
+    cleanContacts(made, output, from, to, { keys: exact, keyStrength: options.keyStrength, fixedAfter: to < frames });
+  } else {
+    copyFrames(made, from, to, output, from);
+  }
+  return alignSigns(output);
+}
+
+/** Blends a range into the dance around it; its way over the floor is brought to where the old dance goes on. */
+function joinRange(made: Motion, previous: Motion, from: number, to: number): void {
+  const blend = Math.min(RANGE_BLEND, Math.floor((to - from) / 3));
+  if (to < previous.frames) {
+    const missing = [0, 2].map((k) => previous.root[to * 3 + k] - made.root[(to - 1) * 3 + k]);
+    const step = [0, 2].map((k) => previous.root[to * 3 + k] - previous.root[(to - 1) * 3 + k]);
+    for (let t = from; t < to; t++) {
+      const share = smoothstep((t - from + 1) / (to - from));
+      made.root[t * 3] += share * (missing[0] - step[0]);
+      made.root[t * 3 + 2] += share * (missing[1] - step[1]);
+    }
+    copyFrames(previous, to, previous.frames, made, to);
+  }
+  for (let i = 0; i < blend; i++) {
+    const share = 1 - smoothstep((i + 1) / (blend + 1));
+    if (from > 0) mixFrame(made, from + i, previous, from + i, share);
+    if (to < previous.frames) mixFrame(made, to - 1 - i, previous, to - 1 - i, share);
+  }
+}
