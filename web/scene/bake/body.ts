@@ -1,0 +1,261 @@
+/**
+ * The figure's shape in the rest T-pose, left side and middle; the right side is its mirror image.
+ * Limbs hang on the joints of spec.json; the other numbers are sizes in metres chosen by eye.
+ */
+import { REST } from '../rest';
+import { below, blend, both, common, ellipsoid, grow, limb, loft, type Shape, type Vector } from './sdf';
+import { jointIndex } from '../../core/skeleton';
+
+/** A closed part of the figure with the box and grid cell that its mesh is made with. */
+export interface Part {
+  name: 'body' | 'head' | 'visor' | 'glove' | 'shoe';
+  shape: Shape;
+  low: Vector;
+  high: Vector;
+  cell: number;
+  /** True for a part that the mirror plane cuts; else the part is a left one. */
+  symmetric: boolean;
+}
+
+function joint(name: string): Vector {
+  const at = jointIndex(name) * 3;
+  return [REST[at], REST[at + 1], REST[at + 2]];
+}
+
+const add = (a: Vector, b: Vector): Vector => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+
+const [hip, knee, ankle, toe] = ['left_hip', 'left_knee', 'left_ankle', 'left_foot'].map(joint);
+const [shoulder, elbow, wrist, hand] = ['left_shoulder', 'left_elbow', 'left_wrist', 'left_hand'].map(joint);
+const [pelvis, neck, head] = ['pelvis', 'neck', 'head'].map(joint);
+
+function torso(): Shape {
+  const bottom: Vector = [0, pelvis[1] - 0.1, -0.012];
+  const top: Vector = [0, neck[1] - 0.02, -0.012];
+  // Side axis x: u is the half-width, v points backwards (y cross x = -z), so a positive dv shifts a section to the back.
+  const trunk = loft(
+    bottom,
+    top,
+    [1, 0, 0],
+    [
+      { t: 0.0, u: 0.128, v: 0.092, dv: 0.004 },
+      { t: 0.11, u: 0.15, v: 0.104, dv: 0.006 },
+      { t: 0.24, u: 0.142, v: 0.096, dv: 0.002 },
+      { t: 0.4, u: 0.117, v: 0.08, dv: -0.002 },
+      { t: 0.47, u: 0.114, v: 0.079, dv: -0.003 },
+      { t: 0.6, u: 0.126, v: 0.088, dv: -0.002 },
+      { t: 0.75, u: 0.142, v: 0.099, dv: 0.003 },
+      { t: 0.87, u: 0.143, v: 0.094, dv: 0.012 },
+      { t: 0.95, u: 0.115, v: 0.076, dv: 0.022 },
+      { t: 1.0, u: 0.07, v: 0.06, dv: 0.026 },
+    ],
+    [0.06, 0.04],
+    2.25,
+  );
+  const chest = both(ellipsoid([0.064, 1.325, 0.058], [0.07, 0.056, 0.036]), 0.05);
+  const seat = both(ellipsoid([0.066, hip[1] + 0.02, -0.06], [0.074, 0.082, 0.062]), 0.035);
+  const trapezius = both(limb([0.02, 1.495, -0.045], [0.165, 1.437, -0.052], 0.042, 0.036), 0.04);
+  const side = both(limb([0.115, 1.25, -0.03], [0.165, 1.385, -0.052], 0.03, 0.03), 0.02);
+  const throat = limb([0, 1.43, -0.035], add(neck, [0, 0.035, 0.012]), 0.06, 0.05);
+  return blend(0.045, trunk, chest, seat, trapezius, side, throat);
+}
+
+function arm(): Shape {
+  const upper = loft(
+    shoulder,
+    elbow,
+    [0, 1, 0],
+    [
+      { t: -0.08, u: 0.05, v: 0.052 },
+      { t: 0.1, u: 0.053, v: 0.054 },
+      { t: 0.32, u: 0.046, v: 0.047 },
+      { t: 0.58, u: 0.041, v: 0.044 },
+      { t: 0.86, u: 0.035, v: 0.037 },
+      { t: 1.0, u: 0.034, v: 0.036 },
+    ],
+    [0.05, 0.03],
+  );
+  const lower = loft(
+    elbow,
+    wrist,
+    [0, 1, 0],
+    [
+      { t: -0.04, u: 0.033, v: 0.036 },
+      { t: 0.14, u: 0.037, v: 0.041 },
+      { t: 0.3, u: 0.036, v: 0.041 },
+      { t: 0.6, u: 0.029, v: 0.034 },
+      { t: 0.88, u: 0.022, v: 0.028 },
+      { t: 1.0, u: 0.021, v: 0.028 },
+    ],
+    [0.03, 0.02],
+  );
+  const deltoid = ellipsoid(add(shoulder, [0.002, 0.004, 0.002]), [0.066, 0.056, 0.058]);
+  return blend(0.03, blend(0.015, upper, lower), deltoid);
+}
+
+function leg(): Shape {
+  // Side axis x: u is the half-width; v points forwards for a downward tube.
+  const thigh = loft(
+    hip,
+    knee,
+    [1, 0, 0],
+    [
+      { t: -0.06, u: 0.082, v: 0.088 },
+      { t: 0.1, u: 0.08, v: 0.086, dv: 0.003 },
+      { t: 0.35, u: 0.07, v: 0.078, dv: 0.008 },
+      { t: 0.65, u: 0.056, v: 0.064, dv: 0.006 },
+      { t: 0.88, u: 0.047, v: 0.053, dv: 0.002 },
+      { t: 1.02, u: 0.045, v: 0.05 },
+    ],
+    [0.05, 0.04],
+  );
+  const shin = loft(
+    knee,
+    ankle,
+    [1, 0, 0],
+    [
+      { t: -0.04, u: 0.044, v: 0.049 },
+      { t: 0.09, u: 0.043, v: 0.048, dv: -0.004 },
+      { t: 0.27, u: 0.047, v: 0.053, dv: -0.013 },
+      { t: 0.45, u: 0.042, v: 0.047, dv: -0.011 },
+      { t: 0.7, u: 0.031, v: 0.035, dv: -0.005 },
+      { t: 0.9, u: 0.027, v: 0.032 },
+      { t: 1.0, u: 0.028, v: 0.033 },
+    ],
+    [0.04, 0.03],
+  );
+  const cap = ellipsoid(add(knee, [0, 0.006, 0.034]), [0.026, 0.034, 0.017]);
+  return blend(0.025, blend(0.02, thigh, shin), cap);
+}
+
+function glove(): Shape {
+  const along = (t: number): Vector => [
+    wrist[0] + t * (hand[0] - wrist[0]),
+    wrist[1] + t * (hand[1] - wrist[1]),
+    wrist[2] + t * (hand[2] - wrist[2]),
+  ];
+  const palm = loft(
+    wrist,
+    hand,
+    [0, 1, 0],
+    [
+      { t: -0.75, u: 0.0265, v: 0.033 },
+      { t: -0.3, u: 0.0235, v: 0.0305 },
+      { t: 0.0, u: 0.022, v: 0.031 },
+      { t: 0.45, u: 0.019, v: 0.037 },
+      { t: 0.85, u: 0.016, v: 0.041 },
+      { t: 1.05, u: 0.013, v: 0.039 },
+    ],
+    [0.03, 0.012],
+  );
+  const knuckles = along(1.0);
+  // Forward offset of the knuckle, spread at the tip, length: index, middle, ring, little finger; slightly bent, as in a relaxed hand.
+  const fingers = [
+    [0.0285, 0.034, 0.08],
+    [0.0095, 0.0115, 0.088],
+    [-0.0095, -0.0105, 0.082],
+    [-0.0275, -0.032, 0.065],
+  ].map(([z, tip, length]) => {
+    const a = add(knuckles, [-0.004 - Math.abs(z) * 0.12, 0.001, z]);
+    const b = add(knuckles, [length * 0.48, -0.008, (z + tip) / 2]);
+    const c = add(knuckles, [length * 0.92, -0.03, tip]);
+    return blend(0.008, limb(a, b, 0.0112, 0.0098), limb(b, c, 0.0098, 0.0082));
+  });
+  const thumb = blend(
+    0.012,
+    limb(add(along(0.15), [0, -0.004, 0.016]), add(along(0.62), [0, -0.016, 0.052]), 0.0165, 0.0128),
+    limb(add(along(0.62), [0, -0.016, 0.052]), add(along(0.98), [0.004, -0.026, 0.064]), 0.0122, 0.0095),
+  );
+  const whole = blend(0.016, palm, blend(0.0045, fingers[0], fingers[1], fingers[2], fingers[3]), thumb);
+  return common(0.006, whole, below([wrist[0] - 0.046, 0, 0], [-1, 0, 0]));
+}
+
+function shoe(): Shape {
+  const length = Math.hypot(toe[0] - ankle[0], toe[2] - ankle[2]);
+  const d = [(toe[0] - ankle[0]) / length, (toe[2] - ankle[2]) / length];
+  const point = (l: number, y: number): Vector => [ankle[0] + l * d[0], y, ankle[2] + l * d[1]];
+  // Sections along the foot, [distance from the ankle, half-width, top height]; the sole plane cuts off their lower third.
+  const sections = [
+    [-0.048, 0.031, 0.07],
+    [-0.01, 0.034, 0.085],
+    [0.045, 0.037, 0.078],
+    [0.09, 0.043, 0.06],
+    [0.13, 0.0465, 0.049],
+    [0.165, 0.041, 0.042],
+    [0.185, 0.034, 0.037],
+  ];
+  const [low, high] = [-0.048, 0.185];
+  const upper = loft(
+    point(low, 0),
+    point(high, 0),
+    [0, 1, 0],
+    sections.map(([l, width, top]) => ({ t: (l - low) / (high - low), u: top * 0.66, v: width, du: top * 0.34 })),
+    [0.03, 0.026],
+    2.3,
+  );
+  const cuff = limb(add(ankle, [0, 0.07, 0]), add(ankle, [0, -0.03, -0.004]), 0.037, 0.039);
+  const tilt: Vector = [0, 1, -0.22];
+  return common(
+    0.007,
+    blend(0.035, upper, common(0.006, cuff, below(add(ankle, [0, 0.042, 0]), tilt))),
+    below([0, 0, 0], [0, -1, 0]),
+  );
+}
+
+function skull(): Shape {
+  const at = (y: number, z: number): Vector => [0, head[1] + y, head[2] + z];
+  const cranium = ellipsoid(at(0.1, -0.008), [0.0745, 0.09, 0.093]);
+  const face = ellipsoid(at(0.052, 0.026), [0.059, 0.082, 0.066]);
+  const chin = ellipsoid(at(-0.012, 0.066), [0.025, 0.02, 0.02]);
+  const cheeks = both(ellipsoid([0.036, head[1] + 0.045, head[2] + 0.058], [0.024, 0.026, 0.022]), 0.02);
+  const brow = ellipsoid(at(0.108, 0.074), [0.046, 0.014, 0.014]);
+  const nose = limb(at(0.09, 0.087), at(0.05, 0.103), 0.0065, 0.0105);
+  const lips = ellipsoid(at(0.016, 0.084), [0.018, 0.01, 0.009]);
+  const ears = both(ellipsoid([0.0745, head[1] + 0.07, head[2] - 0.016], [0.009, 0.026, 0.017]), 0.01);
+  const bone = blend(0.035, cranium, face, chin, cheeks);
+  return blend(0.008, blend(0.016, bone, brow, nose, lips), ears);
+}
+
+function headShape(): Shape {
+  const column = limb(add(neck, [0, -0.03, -0.002]), add(head, [0, 0.02, -0.012]), 0.046, 0.0475);
+  return blend(0.03, skull(), column);
+}
+
+function visor(): Shape {
+  const centre = head[1] + 0.083;
+  const front: Shape = (_x, _y, z) => head[2] + 0.012 - z;
+  const band: Shape = (x, y) => {
+    const taper = 0.0255 - 0.012 * (x / 0.075) ** 2;
+    // The lower edge arches over the nose.
+    const arch = 0.011 * Math.exp(-((x / 0.017) ** 2));
+    return Math.max(y - centre - taper - 0.002, centre - taper + arch - y);
+  };
+  return common(0.006, grow(skull(), 0.0035), front, band);
+}
+
+const suit = (): Shape => {
+  const half = arm();
+  const arms: Shape = both(half, 0.02);
+  const legs = both(leg(), 0.022);
+  const cutWrist: Shape = (x) => Math.abs(x) - (wrist[0] - 0.02);
+  const cutAnkle: Shape = (_x, y) => ankle[1] + 0.005 - y;
+  const collar = below(add(neck, [0, 0.022, 0]), [0, 1, -0.35]);
+  return common(0.005, blend(0.045, torso(), arms, legs), cutWrist, cutAnkle, collar);
+};
+
+/** Every part of the figure. */
+export function figureParts(): Part[] {
+  return [
+    { name: 'body', shape: suit(), low: [0, 0.05, -0.2], high: [0.73, 1.56, 0.16], cell: 0.012, symmetric: true },
+    { name: 'head', shape: headShape(), low: [0, 1.4, -0.14], high: [0.12, 1.8, 0.17], cell: 0.0072, symmetric: true },
+    { name: 'visor', shape: visor(), low: [0, 1.58, 0], high: [0.12, 1.72, 0.17], cell: 0.0043, symmetric: true },
+    {
+      name: 'glove',
+      shape: glove(),
+      low: [0.64, 1.33, -0.16],
+      high: [0.93, 1.48, 0.03],
+      cell: 0.005,
+      symmetric: false,
+    },
+    { name: 'shoe', shape: shoe(), low: [0.02, -0.02, -0.15], high: [0.22, 0.17, 0.2], cell: 0.0082, symmetric: false },
+  ];
+}

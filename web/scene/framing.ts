@@ -1,0 +1,80 @@
+/** Camera maths without a camera: how far to stand back, and how a follow point eases after the dancer. */
+
+/** What the opening view must hold: a standing figure with raised arms, metres. */
+export const FIGURE_BOX = { height: 2.16, width: 1.7, depth: 0.8 };
+
+/**
+ * Distance at which a box facing a perspective camera fits the view, from the camera to the box's centre, metres.
+ * @param fieldOfView vertical, radians
+ * @param aspect width over height of the view
+ * @param margin share of the view left free on each axis, 0..1
+ */
+export function framingDistance(
+  fieldOfView: number,
+  aspect: number,
+  box: { height: number; width: number; depth: number } = FIGURE_BOX,
+  margin = 0.08,
+): number {
+  const tangent = Math.tan(fieldOfView / 2) * (1 - margin);
+  return Math.max(box.height / 2 / tangent, box.width / 2 / (tangent * aspect)) + box.depth / 2;
+}
+
+/** A value that eases towards a goal as a critically damped spring: quickest without overshoot. */
+export class Spring {
+  velocity = 0;
+
+  /** @param settle about the time to cover most of the way, seconds */
+  constructor(
+    public value: number,
+    private readonly settle: number,
+  ) {}
+
+  /** Moves on by `seconds` (exact for a goal that stands still) and returns the new value. */
+  step(goal: number, seconds: number): number {
+    const rate = 2 / this.settle;
+    const offset = this.value - goal;
+    const push = (this.velocity + rate * offset) * seconds;
+    const decay = Math.exp(-rate * seconds);
+    this.velocity = (this.velocity - rate * push) * decay;
+    this.value = goal + (offset + push) * decay;
+    return this.value;
+  }
+
+  /** Jumps to a value and rests there. */
+  reset(value: number): void {
+    this.value = value;
+    this.velocity = 0;
+  }
+}
+
+/** Lowers the drawing resolution while frames are late. */
+export class ResolutionGovernor {
+  private times: number[] = [];
+
+  /** @param full device pixels per CSS pixel at best quality */
+  constructor(
+    private readonly full: number,
+    public ratio = full,
+  ) {}
+
+  /**
+   * Takes the time between two drawn frames, milliseconds.
+   * @returns the new ratio when it should change
+   */
+  sample(milliseconds: number): number | undefined {
+    // A tab that slept says nothing about speed.
+    if (milliseconds > 250) return undefined;
+    this.times.push(milliseconds);
+    if (this.times.length < 45) return undefined;
+    const median = this.times.sort((a, b) => a - b)[22];
+    this.times = [];
+    // 24 ms: slower than 42 frames a second, so neither a 50 Hz nor a 60 Hz screen's own pace.
+    if (median < 24 || this.ratio <= this.floor) return undefined;
+    this.ratio = Math.max(this.floor, this.ratio * 0.8);
+    return this.ratio;
+  }
+
+  private get floor(): number {
+    return Math.min(0.6, this.full);
+  }
+}

@@ -1,0 +1,283 @@
+/** The stage: the figure, its floor, lights and camera, and the loop that draws them. */
+import { NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three';
+import type { FramePose } from '../core/types';
+import { JOINT_COUNT } from '../core/skeleton';
+import { Figure } from './figure';
+import { loadFigure } from './figure-asset';
+import { createBackdrop, Floor } from './floor';
+import { FollowCamera } from './follow-camera';
+import { ResolutionGovernor } from './framing';
+import { createSurroundings, Lights } from './lights';
+import { Posing, type JointHover } from './posing';
+import type { PoseListener } from './pose-edit';
+import { REST_HEIGHT } from './rest';
+
+export type { JointHover } from './posing';
+export type { PoseListener, PosePhase } from './pose-edit';
+export { jointLabel } from './pose-edit';
+
+/** What the rest of the app does with the stage. Functions that take a listener return how to stop listening. */
+export interface Stage {
+  readonly canvas: HTMLCanvasElement;
+  /** Resolves when the figure is there; rejects when it cannot be loaded. */
+  readonly ready: Promise<void>;
+  /** Draws a frame of the dance. In pose mode it is kept for later. */
+  show(pose: FramePose): void;
+  /** Calls back before each screen refresh, with performance.now(). */
+  beforeFrame(callback: (now: number) => void): () => void;
+  setMode(mode: 'dance' | 'pose'): void;
+  readonly mode: 'dance' | 'pose';
+  /** Pose mode: shows this pose for editing, 24 x 3 axis-angle. Listeners are not told. */
+  editPose(rotations: ArrayLike<number>): void;
+  onPoseChange(listener: PoseListener): () => void;
+  selectJoint(joint: number | null): void;
+  onSelect(listener: (joint: number | null) => void): () => void;
+  onHover(listener: (hover: JointHover | null) => void): () => void;
+  /** Turns the selected joint about one of its own axes; quick repeats make one change. */
+  rotateSelected(axis: 'x' | 'y' | 'z', radians: number): void;
+  /** Whether the camera goes with the dancer. */
+  follow: boolean;
+  /** Back to the opening view. */
+  frameFigure(): void;
+  /** A glow on the floor that fades by itself; strength 0..1. */
+  pulse(strength?: number): void;
+  /** Draws per second over the last second, and draw calls of the last one. */
+  stats(): { fps: number; drawCalls: number; pixelRatio: number };
+  dispose(): void;
+}
+
+/**
+ * Builds the stage inside an element, whose size it follows.
+ * @throws Error when the browser has no WebGL 2
+ */
+export function createStage(container: HTMLElement): Stage {
+  return new WebGLStage(container);
+}
+
+class WebGLStage implements Stage {
+  readonly canvas: HTMLCanvasElement;
+  readonly ready: Promise<void>;
+  mode: 'dance' | 'pose' = 'dance';
+  private readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly floor = new Floor();
+  private readonly backdrop = createBackdrop();
+  private readonly lights = new Lights(true);
+  private readonly view: FollowCamera;
+  private readonly posing: Posing;
+  private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  private readonly governor = new ResolutionGovernor(Math.min(devicePixelRatio || 1, 2));
+  private readonly callbacks = new Set<(now: number) => void>();
+  private readonly watchers: { disconnect(): void }[] = [];
+  private readonly draws: number[] = [];
+  private readonly last: { root: Float32Array; quaternions: Float32Array };
+  private figure: Figure | null = null;
+  private glow = 0;
+  private dirty = true;
+  private seen = true;
+  private disposed = false;
+  private before = 0;
+  private drewBefore = false;
+  private request = 0;
+
+  constructor(private readonly container: HTMLElement) {
+    this.renderer = createRenderer();
+    this.canvas = this.renderer.domElement;
+    Object.assign(this.canvas.style, { display: 'block', width: '100%', height: '100%', touchAction: 'none' });
+    container.append(this.canvas);
+    this.last = { root: new Float32Array([0, REST_HEIGHT, 0]), quaternions: new Float32Array(JOINT_COUNT * 4) };
+    for (let joint = 0; joint < JOINT_COUNT; joint++) this.last.quaternions[joint * 4 + 3] = 1;
+
+    this.view = new FollowCamera(this.canvas, this.calm);
+    this.posing = new Posing({
+      camera: this.view.camera,
+      element: this.canvas,
+      scene: this.scene,
+      figure: () => this.figure,
+      changed: () => (this.dirty = true),
+      orbit: (on) => (this.view.controls.enabled = on),
+    });
+    this.scene.add(this.backdrop, this.floor.mesh, this.lights.group);
+    this.scene.environment = createSurroundings(this.renderer);
+    this.scene.environmentIntensity = 0.55;
+    this.canvas.addEventListener('dblclick', () => this.mode === 'dance' && this.frameFigure());
+    this.canvas.addEventListener('webglcontextrestored', () => (this.dirty = true));
+    this.watch();
+    this.ready = this.loadFigure();
+    this.ready.catch(() => undefined);
+    this.request = requestAnimationFrame(this.tick);
+  }
+
+  get follow(): boolean {
+    return this.view.follow;
+  }
+
+  set follow(on: boolean) {
+    this.view.follow = on;
+  }
+
+  show(pose: FramePose): void {
+    this.last.root.set(pose.root);
+    this.last.quaternions.set(pose.quaternions);
+    if (this.mode === 'dance') this.draw();
+  }
+
+  beforeFrame(callback: (now: number) => void): () => void {
+    this.callbacks.add(callback);
+    return () => this.callbacks.delete(callback);
+  }
+
+  setMode(mode: 'dance' | 'pose'): void {
+    if (mode === this.mode) return;
+    this.mode = mode;
+    this.posing.setActive(mode === 'pose');
+    if (mode === 'dance') this.draw();
+    else this.view.aim(0, 0);
+  }
+
+  editPose(rotations: ArrayLike<number>): void {
+    this.posing.load(rotations);
+  }
+
+  onPoseChange(listener: PoseListener): () => void {
+    return this.posing.edit.listen(listener);
+  }
+
+  selectJoint(joint: number | null): void {
+    if (this.mode === 'pose') this.posing.select(joint);
+  }
+
+  onSelect(listener: (joint: number | null) => void): () => void {
+    this.posing.selectListeners.add(listener);
+    return () => this.posing.selectListeners.delete(listener);
+  }
+
+  onHover(listener: (hover: JointHover | null) => void): () => void {
+    this.posing.hoverListeners.add(listener);
+    return () => this.posing.hoverListeners.delete(listener);
+  }
+
+  rotateSelected(axis: 'x' | 'y' | 'z', radians: number): void {
+    this.posing.nudge(axis, radians);
+  }
+
+  frameFigure(): void {
+    this.view.frame();
+    this.dirty = true;
+  }
+
+  pulse(strength = 1): void {
+    if (!this.calm) this.glow = Math.max(this.glow, Math.min(strength, 1));
+  }
+
+  stats(): { fps: number; drawCalls: number; pixelRatio: number } {
+    const now = performance.now();
+    return {
+      fps: this.draws.filter((time) => now - time < 1000).length,
+      drawCalls: this.renderer.info.render.calls,
+      pixelRatio: this.renderer.getPixelRatio(),
+    };
+  }
+
+  dispose(): void {
+    this.disposed = true;
+    cancelAnimationFrame(this.request);
+    for (const watcher of this.watchers) watcher.disconnect();
+    this.posing.dispose();
+    this.view.dispose();
+    this.figure?.dispose();
+    this.floor.dispose();
+    this.lights.dispose();
+    this.scene.environment?.dispose();
+    this.backdrop.geometry.dispose();
+    this.renderer.dispose();
+    this.canvas.remove();
+  }
+
+  private async loadFigure(): Promise<void> {
+    const geometry = await loadFigure();
+    if (this.disposed) return;
+    this.figure = new Figure(geometry);
+    this.scene.add(this.figure.mesh);
+    if (this.mode === 'dance') this.draw();
+    else this.posing.refresh();
+  }
+
+  private draw(): void {
+    this.view.aim(this.last.root[0], this.last.root[2]);
+    this.figure?.show(this.last);
+    this.dirty = true;
+  }
+
+  private watch(): void {
+    const size = new ResizeObserver(() => this.resize());
+    size.observe(this.container);
+    const sight = new IntersectionObserver(([entry]) => {
+      this.seen = entry.isIntersecting;
+      this.dirty = true;
+    });
+    sight.observe(this.container);
+    this.watchers.push(size, sight);
+    this.resize();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.container;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(this.governor.ratio);
+    this.renderer.setSize(width, height, false);
+    this.posing.handles.ratio = this.governor.ratio;
+    this.view.resize(width, height);
+    // Drawn at once: an emptied canvas must not flash.
+    if (this.before) this.render();
+  }
+
+  private readonly tick = (now: number): void => {
+    this.request = requestAnimationFrame(this.tick);
+    const elapsed = now - this.before;
+    this.before = now;
+    for (const callback of this.callbacks) callback(now);
+    const seconds = Math.min(Math.max(elapsed, 0), 100) / 1000;
+    if (this.view.update(seconds)) this.dirty = true;
+    if (this.glow > 0) {
+      this.glow = this.glow < 0.01 ? 0 : this.glow * Math.exp(-seconds * 4.5);
+      this.floor.glow = this.glow;
+      this.dirty = true;
+    }
+    const draw = this.dirty && this.seen;
+    if (draw) {
+      const ratio = this.drewBefore ? this.governor.sample(elapsed) : undefined;
+      if (ratio !== undefined) this.resize();
+      this.render();
+      this.draws.push(now);
+      while (now - this.draws[0] > 1000) this.draws.shift();
+    }
+    this.drewBefore = draw;
+  };
+
+  private render(): void {
+    this.dirty = false;
+    const [x, z] = this.view.centre;
+    this.floor.follow(x, z);
+    this.lights.follow(x, z);
+    this.backdrop.position.copy(this.view.camera.position);
+    if (this.figure) this.floor.shade(this.figure.pose.joints);
+    this.renderer.render(this.scene, this.view.camera);
+  }
+}
+
+function createRenderer(): WebGLRenderer {
+  let renderer: WebGLRenderer;
+  try {
+    renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
+  } catch {
+    throw new Error(
+      'This browser cannot show 3D (WebGL 2 is off). Turn on hardware acceleration or try another browser.',
+    );
+  }
+  renderer.toneMapping = NeutralToneMapping;
+  renderer.toneMappingExposure = 1.05;
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.type = PCFShadowMap;
+  return renderer;
+}

@@ -1,0 +1,163 @@
+/** Pictures of poses: the same figure before nothing, drawn by one small renderer in idle time. */
+import { NeutralToneMapping, OrthographicCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import { poseToQuaternions } from '../core/rotation';
+import { CAPSULES, placePoint, standingRoot } from './body-points';
+import { Figure } from './figure';
+import { loadFigure } from './figure-asset';
+import { createSurroundings, Lights } from './lights';
+import { headingOf } from './heading';
+
+/** Draws poses as pictures. */
+export interface Thumbnailer {
+  /**
+   * A transparent PNG of a pose, seen from its front left.
+   * @param rotations 24 x 3 axis-angle, radians
+   * @param size edge in CSS pixels; the picture has twice as many
+   * @returns an object URL, which the caller revokes
+   */
+  render(rotations: ArrayLike<number>, size: number): Promise<string>;
+  dispose(): void;
+}
+
+/** Angle between the pose's own forward direction and the direction to the camera, radians. */
+const TURN = 0.5;
+const ELEVATION = 0.1;
+/** A crouching figure is shown crouching, not blown up to fill the picture: smallest height of the view, metres. */
+const SMALLEST_VIEW = 1.72;
+
+interface Job {
+  rotations: ArrayLike<number>;
+  size: number;
+  resolve: (url: string) => void;
+  reject: (error: unknown) => void;
+}
+
+/**
+ * A thumbnailer; its renderer starts with the first picture.
+ * @throws (from render) Error when the browser has no WebGL 2 or the thumbnailer is disposed
+ */
+export function createThumbnailer(): Thumbnailer {
+  return new QueuedThumbnailer();
+}
+
+class QueuedThumbnailer implements Thumbnailer {
+  private readonly queue: Job[] = [];
+  private studio: Promise<Studio> | undefined;
+  private busy = false;
+  private disposed = false;
+
+  render(rotations: ArrayLike<number>, size: number): Promise<string> {
+    if (this.disposed) return Promise.reject(new Error('The thumbnailer has been closed.'));
+    return new Promise((resolve, reject) => {
+      this.queue.push({ rotations: Array.from(rotations), size, resolve, reject });
+      void this.work();
+    });
+  }
+
+  dispose(): void {
+    this.disposed = true;
+    for (const job of this.queue.splice(0)) job.reject(new Error('The thumbnailer has been closed.'));
+    void this.studio?.then((studio) => studio.dispose()).catch(() => undefined);
+  }
+
+  private async work(): Promise<void> {
+    if (this.busy) return;
+    this.busy = true;
+    for (let job = this.queue.shift(); job; job = this.queue.shift()) {
+      try {
+        this.studio ??= Studio.open();
+        const studio = await this.studio;
+        await idle();
+        job.resolve(URL.createObjectURL(await studio.picture(job.rotations, job.size)));
+      } catch (error) {
+        job.reject(error);
+      }
+    }
+    this.busy = false;
+  }
+}
+
+/** Resolves when the page has a moment; soon even if it never has. */
+function idle(): Promise<void> {
+  return new Promise((resolve) => {
+    if (typeof requestIdleCallback === 'function') requestIdleCallback(() => resolve(), { timeout: 120 });
+    else setTimeout(resolve, 8);
+  });
+}
+
+class Studio {
+  private readonly scene = new Scene();
+  private readonly camera = new OrthographicCamera();
+  private readonly lights = new Lights(false);
+
+  private constructor(
+    private readonly renderer: WebGLRenderer,
+    private readonly figure: Figure,
+  ) {
+    this.scene.add(figure.mesh, this.lights.group);
+    this.scene.environment = createSurroundings(renderer);
+    this.scene.environmentIntensity = 0.8;
+  }
+
+  static async open(): Promise<Studio> {
+    const geometry = await loadFigure();
+    const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    renderer.setClearColor(0, 0);
+    renderer.toneMapping = NeutralToneMapping;
+    renderer.toneMappingExposure = 1.25;
+    return new Studio(renderer, new Figure(geometry));
+  }
+
+  picture(rotations: ArrayLike<number>, size: number): Promise<Blob> {
+    const quaternions = poseToQuaternions(rotations);
+    this.figure.show({ root: standingRoot(quaternions), quaternions });
+    this.aim(headingOf(quaternions) + TURN);
+    this.renderer.setSize(size * 2, size * 2, false);
+    this.renderer.render(this.scene, this.camera);
+    return new Promise((resolve, reject) =>
+      this.renderer.domElement.toBlob((blob) =>
+        blob ? resolve(blob) : reject(new Error('The picture of the pose could not be made.')),
+      ),
+    );
+  }
+
+  dispose(): void {
+    this.figure.dispose();
+    this.scene.environment?.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
+  /** Turns camera and lights to an azimuth and fits the body into the square. */
+  private aim(azimuth: number): void {
+    const { joints, rotations } = this.figure.pose;
+    const back = new Vector3(
+      Math.sin(azimuth) * Math.cos(ELEVATION),
+      Math.sin(ELEVATION),
+      Math.cos(azimuth) * Math.cos(ELEVATION),
+    );
+    const right = new Vector3(Math.cos(azimuth), 0, -Math.sin(azimuth));
+    const up = back.clone().cross(right);
+    const bounds = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+    const p = new Vector3();
+    for (const { from, to } of CAPSULES)
+      for (const end of [from, to]) {
+        p.fromArray(placePoint(end, joints, rotations));
+        const [x, y] = [p.dot(right), p.dot(up)];
+        bounds.left = Math.min(bounds.left, x - end.radius);
+        bounds.right = Math.max(bounds.right, x + end.radius);
+        bounds.bottom = Math.min(bounds.bottom, y - end.radius);
+        bounds.top = Math.max(bounds.top, y + end.radius);
+      }
+    const half = (Math.max(bounds.right - bounds.left, bounds.top - bounds.bottom, SMALLEST_VIEW) / 2) * 1.05;
+    const x = (bounds.left + bounds.right) / 2;
+    // A figure lower than the view stands at its bottom, as on a floor.
+    const y = Math.max((bounds.bottom + bounds.top) / 2, bounds.bottom + half / 1.05 - 0.0);
+    this.camera.position.copy(back).multiplyScalar(6).addScaledVector(right, x).addScaledVector(up, y);
+    this.camera.up.copy(up);
+    this.camera.lookAt(this.camera.position.clone().sub(back));
+    Object.assign(this.camera, { left: -half, right: half, top: half, bottom: -half, near: 0.1, far: 14 });
+    this.camera.updateProjectionMatrix();
+    this.lights.group.rotation.y = azimuth - TURN;
+  }
+}
