@@ -1,0 +1,205 @@
+/** The page's side of the generate worker. */
+import type { Motion } from '../core/types';
+import type { Backend, GenerateReply, GenerateRequest } from './protocol';
+
+type Loaded = Omit<Extract<GenerateReply, { type: 'loaded' }>, 'type' | 'job'>;
+type Result = Omit<Extract<GenerateReply, { type: 'result' }>, 'type' | 'job'>;
+type Loading = Omit<Extract<GenerateReply, { type: 'loading' }>, 'type' | 'job'>;
+
+/** What a dance is made from. */
+export type GenerateJob = Omit<Extract<GenerateRequest, { type: 'generate' }>, 'type' | 'job'>;
+/** The backend in use and why. */
+export type LoadedModel = Loaded;
+/** A finished dance and how it was made. */
+export type GenerateResult = Result;
+/** How far the download of the model is. */
+export type LoadProgress = Loading;
+
+/** How to load the model. */
+export interface LoadOptions {
+  /** Forces a backend. */
+  backend?: Backend;
+  /** WASM threads; by default up to four where the page is isolated. */
+  threads?: number;
+  /** Where the page's own files are; by default document.baseURI, so that any sub-path works. */
+  baseUrl?: string;
+  onProgress?: (progress: LoadProgress) => void;
+}
+
+/** How to follow one generation. */
+export interface GenerateHooks {
+  /** The dance so far: frames [0, motion.frames) are final. For a range it is the old dance. */
+  onPartial?: (motion: Motion, fraction: number, windows: number) => void;
+  /** Rejects the promise at once with an AbortError; the worker stops after the window it is in. */
+  signal?: AbortSignal;
+}
+
+interface Pending {
+  receive(reply: GenerateReply): void;
+  fail(error: Error): void;
+}
+
+/** Loads the model and makes dances in a worker, which is started on first use. */
+export class GenerateClient {
+  private worker: Worker | undefined;
+  private lastJob = 0;
+  private readonly pending = new Map<number, Pending>();
+  private loading: Promise<LoadedModel> | undefined;
+  private loadJob = 0;
+
+  /**
+   * @param createWorker for tests
+   * @param onBackendChange the model had to move to another backend, for instance after the graphics processor was lost
+   */
+  constructor(
+    private readonly createWorker: () => Worker = startWorker,
+    public onBackendChange: (model: LoadedModel) => void = () => undefined,
+  ) {}
+
+  /** The model in use, once it is loaded. */
+  get loaded(): Promise<LoadedModel> | undefined {
+    return this.loading;
+  }
+
+  /**
+   * Loads onnxruntime and the model and checks the backend. A second call waits for the first, unless it forces a backend or a number of
+   * threads.
+   * @throws Error with a message for people
+   */
+  load(options: LoadOptions = {}): Promise<LoadedModel> {
+    if (this.loading && !options.backend && options.threads === undefined) return this.loading;
+    const { backend, threads, onProgress } = options;
+    const baseUrl = options.baseUrl ?? document.baseURI;
+    const loading = new Promise<LoadedModel>((resolve, reject) => {
+      const job = this.begin({
+        receive: (reply) => {
+          if (reply.type === 'loading') onProgress?.(strip(reply));
+          else if (reply.type === 'loaded') {
+            this.pending.delete(job);
+            resolve(strip(reply));
+          } else if (reply.type === 'error') this.settle(job, () => reject(new Error(reply.message)));
+        },
+        fail: (error) => this.settle(job, () => reject(error)),
+      });
+      this.loadJob = job;
+      this.send({ type: 'load', job, baseUrl, backend, threads });
+    });
+    this.loading = loading;
+    // A failed load may be tried again.
+    loading.catch(() => {
+      if (this.loading === loading) this.loading = undefined;
+    });
+    return loading;
+  }
+
+  /**
+   * Makes a dance; loads the model first if nothing has.
+   * @throws DOMException AbortError when the signal is aborted; Error with a message for people
+   */
+  async generate(request: GenerateJob, hooks: GenerateHooks = {}): Promise<GenerateResult> {
+    const { signal, onPartial } = hooks;
+    signal?.throwIfAborted();
+    const abortion = abortPromise(signal);
+    try {
+      await Promise.race([this.load(), abortion.promise]);
+      const job = ++this.lastJob;
+      const result = new Promise<GenerateResult>((resolve, reject) => {
+        this.pending.set(job, {
+          receive: (reply) => {
+            if (reply.type === 'partial') onPartial?.(reply.motion, reply.fraction, reply.windows);
+            else if (reply.type === 'result') this.settle(job, () => resolve(strip(reply)));
+            else if (reply.type === 'cancelled') this.settle(job, () => reject(abortError()));
+            else if (reply.type === 'error') this.settle(job, () => reject(new Error(reply.message)));
+          },
+          fail: (error) => this.settle(job, () => reject(error)),
+        });
+      });
+      this.send({ type: 'generate', job, ...request });
+      const cancel = () => {
+        this.pending.delete(job);
+        this.send({ type: 'cancel', job });
+      };
+      signal?.addEventListener('abort', cancel, { once: true });
+      try {
+        return await Promise.race([result, abortion.promise]);
+      } finally {
+        signal?.removeEventListener('abort', cancel);
+      }
+    } finally {
+      abortion.dispose();
+    }
+  }
+
+  /** Ends the worker; jobs under way reject. */
+  dispose(): void {
+    this.stop(new Error('The dance generator was closed.'));
+  }
+
+  private begin(pending: Pending): number {
+    const job = ++this.lastJob;
+    this.pending.set(job, pending);
+    return job;
+  }
+
+  private settle(job: number, finish: () => void): void {
+    this.pending.delete(job);
+    finish();
+  }
+
+  private send(request: GenerateRequest): void {
+    if (!this.worker) {
+      this.worker = this.createWorker();
+      this.worker.onmessage = ({ data }: MessageEvent<GenerateReply>) => {
+        const pending = this.pending.get(data.job);
+        if (pending) pending.receive(data);
+        else if (data.type === 'loaded' && data.job === this.loadJob) this.moved(strip(data));
+      };
+      this.worker.onerror = (event) => {
+        event.preventDefault();
+        const detail = event.message ? ` (${event.message})` : '';
+        this.stop(new Error(`The dance generator stopped unexpectedly${detail}: try again, or reload the page.`));
+      };
+    }
+    this.worker.postMessage(request);
+  }
+
+  private moved(model: LoadedModel): void {
+    this.loading = Promise.resolve(model);
+    this.onBackendChange(model);
+  }
+
+  private stop(error: Error): void {
+    this.worker?.terminate();
+    this.worker = undefined;
+    this.loading = undefined;
+    for (const pending of [...this.pending.values()]) pending.fail(error);
+    this.pending.clear();
+  }
+}
+
+function startWorker(): Worker {
+  return new Worker(new URL('./generate.worker.ts', import.meta.url), { type: 'module', name: 'generate' });
+}
+
+function strip<T extends { type: string; job: number }>(reply: T): Omit<T, 'type' | 'job'> {
+  const rest: Partial<T> = { ...reply };
+  delete rest.type;
+  delete rest.job;
+  return rest as Omit<T, 'type' | 'job'>;
+}
+
+function abortError(): DOMException {
+  return new DOMException('The generation was cancelled.', 'AbortError');
+}
+
+/** A promise that rejects when the signal is aborted, and a way to stop listening. */
+function abortPromise(signal: AbortSignal | undefined): { promise: Promise<never>; dispose: () => void } {
+  let listener: () => void = () => undefined;
+  const promise = new Promise<never>((_, reject) => {
+    listener = () => reject(abortError());
+    signal?.addEventListener('abort', listener, { once: true });
+  });
+  // Nobody may be racing it any more when it rejects.
+  promise.catch(() => undefined);
+  return { promise, dispose: () => signal?.removeEventListener('abort', listener) };
+}

@@ -1,0 +1,99 @@
+/** Makes dances off the main thread: one job at a time, cancelled between windows. */
+import { generateMotion } from '../core/windows';
+import { DanceEngine } from './onnx-engine';
+import type { GenerateReply, GenerateRequest } from './protocol';
+
+type Load = Extract<GenerateRequest, { type: 'load' }>;
+type Generate = Extract<GenerateRequest, { type: 'generate' }>;
+
+let engine: Promise<DanceEngine> | undefined;
+const jobs = new Map<number, AbortController>();
+/** Jobs run one after the other: two at once would only make both slow. */
+let queue: Promise<void> = Promise.resolve();
+
+function reply(message: GenerateReply, transfer: Transferable[] = []): void {
+  self.postMessage(message, { transfer });
+}
+
+/** Lets messages in: a run on WASM never yields to them by itself. */
+function breathe(): Promise<void> {
+  return new Promise((resolve) => {
+    const channel = new MessageChannel();
+    channel.port1.onmessage = () => {
+      channel.port1.close();
+      resolve();
+    };
+    channel.port2.postMessage(null);
+  });
+}
+
+async function load({ job, baseUrl, backend, threads }: Load): Promise<void> {
+  const before = await engine?.catch(() => undefined);
+  await before?.close();
+  engine = DanceEngine.open(
+    {
+      folder: new URL('models/', baseUrl).href,
+      backend,
+      threads,
+      onProgress: (bytes, totalBytes, cached) =>
+        reply({ type: 'loading', job, fraction: totalBytes ? bytes / totalBytes : 1, bytes, totalBytes, cached }),
+    },
+    (state) => reply({ type: 'loaded', job, ...state }),
+  );
+  reply({ type: 'loaded', job, ...(await engine).state });
+}
+
+async function generate(request: Generate, signal: AbortSignal): Promise<void> {
+  const { job } = request;
+  if (!engine) throw new Error('The dance model is not loaded yet: wait until it is ready.');
+  const dancer = await engine;
+  const begin = performance.now();
+  let windows = 0;
+  const motion = await generateMotion(
+    request,
+    async (inputs) => {
+      await breathe();
+      signal.throwIfAborted();
+      const rows = await dancer.run(inputs);
+      windows++;
+      return rows;
+    },
+    {
+      signal,
+      onPartial: (part, fraction, done) => {
+        // Parts are copies already, so their buffers can go; a range's part is the old dance and must stay.
+        const transfer = part === request.previous ? [] : [part.root.buffer, part.quaternions.buffer];
+        reply({ type: 'partial', job, motion: part, fraction, windows: done }, transfer);
+      },
+    },
+  );
+  const milliseconds = performance.now() - begin;
+  const { backend, model } = dancer.state;
+  reply({ type: 'result', job, motion, backend, model, windows, milliseconds }, [
+    motion.root.buffer,
+    motion.quaternions.buffer,
+  ]);
+}
+
+async function work(request: Load | Generate, controller: AbortController): Promise<void> {
+  const { job } = request;
+  try {
+    controller.signal.throwIfAborted();
+    await (request.type === 'load' ? load(request) : generate(request, controller.signal));
+  } catch (error) {
+    if (controller.signal.aborted) reply({ type: 'cancelled', job });
+    else reply({ type: 'error', job, message: error instanceof Error ? error.message : String(error) });
+  } finally {
+    jobs.delete(job);
+  }
+}
+
+self.onmessage = ({ data: request }: MessageEvent<GenerateRequest>) => {
+  if (request.type === 'cancel') {
+    jobs.get(request.job)?.abort();
+    return;
+  }
+  const controller = new AbortController();
+  jobs.set(request.job, controller);
+  queue = queue.then(() => work(request, controller));
+};
