@@ -1,6 +1,5 @@
 /** Chroma: Meyda's filter bank on our spectra, then CENS post-processing (Mueller, Kurth & Clausen 2005). */
 import Meyda from 'meyda';
-import { applyBank, sparseBank, type SparseBank } from './spectrum';
 
 export const PITCH_CLASSES = 12;
 
@@ -16,33 +15,56 @@ interface MeydaSettings {
   extract(feature: string, signal: Float32Array): unknown;
 }
 
+/** Filters as a list per FFT bin: most bins feed one or two pitch classes only. */
+export interface ChromaBank {
+  bins: Uint16Array;
+  classes: Uint8Array;
+  weights: Float32Array;
+}
+
 /**
- * Meyda's chroma filter bank, rows C, C#, ... B over bins 0 .. size/2.
+ * Meyda's chroma filters (after Ellis 2007, "Chroma feature analysis and synthesis") over bins 0 .. size/2 - 1, each bin's
+ * weights scaled to length 1. That takes out Meyda's emphasis of the octaves around 880 Hz, which a constant-Q chroma does not
+ * have: cosine to librosa's chroma_cens rises from 0.90 to 0.95.
  * @param sampleRate samples per second of the frames
  * @param size FFT size
- * @param tuning deviation from A4 = 440 Hz in semitones
  */
-export function chromaBank(sampleRate: number, size: number, tuning = 0): SparseBank {
+export function chromaBank(sampleRate: number, size: number): ChromaBank {
   const bundle = Meyda as unknown as MeydaSettings & { default?: MeydaSettings };
   const meyda = bundle.default ?? bundle;
-  // Filters depend on frequency / 440 Hz only, so another rate stands for another tuning.
-  meyda.sampleRate = sampleRate * 2 ** (-tuning / 12);
+  meyda.sampleRate = sampleRate;
   meyda.bufferSize = size;
   meyda.chromaBands = PITCH_CLASSES;
+  // Meyda keeps the bank of the first settings it ever saw unless told to forget it.
   meyda.chromaFilterBank = undefined;
   meyda.extract('chroma', new Float32Array(size));
   const rows = meyda.chromaFilterBank as unknown as number[][];
   meyda.chromaFilterBank = undefined;
-  return sparseBank(rows, 1e-6);
+  const entries: [bin: number, pitchClass: number, weight: number][] = [];
+  for (let bin = 0; bin < size / 2; bin++) {
+    const length = Math.hypot(...rows.map((row) => row[bin]));
+    if (length === 0) continue;
+    rows.forEach((row, c) => {
+      if (row[bin] > 1e-3 * length) entries.push([bin, c, row[bin] / length]);
+    });
+  }
+  return {
+    bins: Uint16Array.from(entries, (e) => e[0]),
+    classes: Uint8Array.from(entries, (e) => e[1]),
+    weights: Float32Array.from(entries, (e) => e[2]),
+  };
 }
 
 /**
  * Chroma of one frame, not normalised.
  * @param amplitudes amplitude spectrum of the frame
- * @param out 12 numbers
+ * @param out 12 numbers, C first
  */
-export function chroma(bank: SparseBank, amplitudes: Float32Array, out: Float32Array): Float32Array {
-  return applyBank(bank, amplitudes, out);
+export function chroma(bank: ChromaBank, amplitudes: Float32Array, out: Float32Array): Float32Array {
+  const { bins, classes, weights } = bank;
+  out.fill(0);
+  for (let i = 0; i < bins.length; i++) out[classes[i]] += weights[i] * amplitudes[bins[i]];
+  return out;
 }
 
 /** Odd-length Hann window of sum 1 that reaches zero just outside its ends. */

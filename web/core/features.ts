@@ -1,7 +1,7 @@
 /** Music features of a song: 12 chroma, beat, downbeat and onset per frame (spec.json), made chunk by chunk. */
-import { findBars } from './beats-bars';
-import { followTempo, normaliseEnvelope, trackBeats } from './beats';
+import { findGrid, type GridEvidence } from './beats-grid';
 import { cens, chroma, chromaBank, PITCH_CLASSES } from './chroma';
+import { FrameCutter, Rows } from './features-stream';
 import { FLUX_BANDS, FluxMeter, percentile } from './onset';
 import { Resampler } from './resample';
 import { spec } from './spec';
@@ -15,13 +15,15 @@ const DOWNBEAT = spec.features.names.indexOf('downbeat');
 const ONSET = spec.features.names.indexOf('onset');
 const SIZE = spec.features.fftSize;
 /** Flux frames per feature frame: beats are found on a finer grid than they are stored. */
-const SUBFRAMES = 3;
-const FLUX_HOP = spec.features.hop / SUBFRAMES;
-const FLUX_RATE = spec.fps * SUBFRAMES;
-/** Flux compares spectra this many flux frames apart. */
-const FLUX_LAG = 3;
-/** A spectrum feels a sound before its centre reaches it: flux peaks this many flux frames early. */
-const FLUX_DELAY = 2;
+const SUBFRAMES = 2;
+/** Flux compares spectra one feature frame apart ... */
+const FLUX_LAG = SUBFRAMES;
+/** ... and peaks this many flux frames early, because a spectrum feels a sound before its centre reaches it. */
+const FLUX_DELAY = SUBFRAMES;
+/** Chroma is taken from slow sound: the same FFT then tells semitones apart down to the bass. */
+const CHROMA_RATE = spec.features.sampleRate / 4;
+/** Feature frames per chroma frame; CENS smooths over far more. */
+const CHROMA_STEP = 2;
 /** Smoothing of CENS, frames: 0.7 s. */
 const CENS_FRAMES = 21;
 /** Share of a song's onsets that lie below strength 1. */
@@ -39,38 +41,18 @@ export function frameCount(samples: number, sampleRate: number): number {
   return Math.ceil((samples / sampleRate) * spec.fps);
 }
 
-/** Numbers that arrive one frame at a time. */
-class Rows {
-  data: Float32Array;
-  count = 0;
-  constructor(readonly width: number) {
-    this.data = new Float32Array(width * 1024);
-  }
-  /** @returns a view of the new row, to be written by the caller */
-  add(): Float32Array {
-    if ((this.count + 1) * this.width > this.data.length) {
-      const larger = new Float32Array(this.data.length * 2);
-      larger.set(this.data);
-      this.data = larger;
-    }
-    const from = this.count++ * this.width;
-    return this.data.subarray(from, from + this.width);
-  }
-}
-
 /** Analyses a song that arrives in chunks; the result does not depend on how it is cut. */
 export class FeatureExtractor {
   private readonly resampler: Resampler;
+  private readonly decimator = new Resampler(spec.features.sampleRate, CHROMA_RATE);
   private readonly waveform: WaveformBuilder;
   private readonly spectrum = new SpectrumAnalyser(SIZE);
-  private readonly bank = chromaBank(spec.features.sampleRate, SIZE);
+  private readonly bank = chromaBank(CHROMA_RATE, SIZE);
   private readonly flux = new FluxMeter(spec.features.sampleRate, SIZE, FLUX_LAG);
   private readonly chromaRows = new Rows(PITCH_CLASSES);
   private readonly fluxRows = new Rows(FLUX_BANDS);
-  /** Resampled sound from `start` on; begins half a frame before the song. */
-  private buffer = new Float32Array(1 << 16);
-  private start = -SIZE / 2;
-  private held = SIZE / 2;
+  private readonly fluxFrames = new FrameCutter(spec.features.sampleRate, SIZE, spec.fps * SUBFRAMES);
+  private readonly chromaFrames = new FrameCutter(CHROMA_RATE, SIZE, spec.fps / CHROMA_STEP);
 
   /**
    * @param sampleRate of the song
@@ -84,9 +66,10 @@ export class FeatureExtractor {
     this.waveform = new WaveformBuilder(sampleRate, samples);
   }
 
-  /** Seconds whose features are known. */
-  get seconds(): number {
-    return this.chromaRows.count / spec.fps;
+  /** Feature frames that are known now. */
+  get frames(): number {
+    const chromaFrames = (this.chromaRows.count - 1) * CHROMA_STEP + 1;
+    return Math.max(0, Math.min(chromaFrames, Math.floor(this.fluxRows.count / SUBFRAMES)));
   }
 
   /** @param pcm mono samples that follow those given before */
@@ -95,29 +78,23 @@ export class FeatureExtractor {
     this.take(this.resampler.push(pcm));
   }
 
+  /** Waveform so far. */
+  wave(): Waveform {
+    return this.waveform.snapshot();
+  }
+
   private take(sound: Float32Array): void {
-    if (this.held + sound.length > this.buffer.length) {
-      const larger = new Float32Array(2 * (this.held + sound.length));
-      larger.set(this.buffer.subarray(0, this.held));
-      this.buffer = larger;
-    }
-    this.buffer.set(sound, this.held);
-    this.held += sound.length;
-    let at = this.fluxRows.count * FLUX_HOP - SIZE / 2 - this.start;
-    for (; at + SIZE <= this.held; at += FLUX_HOP) {
-      const amplitudes = this.spectrum.analyse(this.buffer, at);
-      if (this.fluxRows.count % SUBFRAMES === 0) chroma(this.bank, amplitudes, this.chromaRows.add());
-      this.flux.next(amplitudes, this.fluxRows.add());
-    }
-    const drop = Math.min(at, this.held);
-    this.buffer.copyWithin(0, drop, this.held);
-    this.held -= drop;
-    this.start += drop;
+    this.fluxFrames.push(sound, (samples, offset) => {
+      this.flux.next(this.spectrum.analyse(samples, offset), this.fluxRows.add());
+    });
+    this.chromaFrames.push(this.decimator.push(sound), (samples, offset) => {
+      chroma(this.bank, this.spectrum.analyse(samples, offset), this.chromaRows.add());
+    });
   }
 
   /** Features of what has been heard so far, as if the song ended there. */
   head(): { features: Features; grid: BeatGrid } {
-    return this.assemble(this.chromaRows.count);
+    return this.assemble(this.frames);
   }
 
   /** @returns everything; call once, after the last `push` */
@@ -125,69 +102,44 @@ export class FeatureExtractor {
     this.take(this.resampler.flush());
     const frames = frameCount(this.samples, this.sampleRate);
     // The last frames look past the end: feed silence until they are all there.
-    while (this.chromaRows.count < frames || this.fluxRows.count < frames * SUBFRAMES)
-      this.take(new Float32Array(SIZE));
-    return { ...this.assemble(frames), waveform: this.waveform.snapshot() };
+    while (this.frames < frames) this.take(new Float32Array(SIZE));
+    return { ...this.assemble(frames), waveform: this.wave() };
+  }
+
+  /** What the beat search works on, for `frames` feature frames. */
+  evidence(frames: number): GridEvidence {
+    const count = frames * SUBFRAMES;
+    const [all, low, middle, high] = [0, 1, 2, 3].map((band) => this.fluxRows.column(band, count, FLUX_DELAY));
+    return { rate: spec.fps * SUBFRAMES, all, low, middle, high, fps: spec.fps, chroma: this.chromaColumns(frames) };
+  }
+
+  /** CENS at the feature rate: between chroma frames by linear interpolation. */
+  private chromaColumns(frames: number): Float32Array {
+    const raw = new Float32Array(frames * PITCH_CLASSES);
+    const { data, count } = this.chromaRows;
+    for (let f = 0; f < frames; f++) {
+      const below = Math.min(count - 1, Math.floor(f / CHROMA_STEP));
+      const above = Math.min(count - 1, below + 1);
+      const share = f / CHROMA_STEP - below;
+      for (let c = 0; c < PITCH_CLASSES; c++) {
+        raw[f * PITCH_CLASSES + c] =
+          data[below * PITCH_CLASSES + c] * (1 - share) + data[above * PITCH_CLASSES + c] * share;
+      }
+    }
+    return cens(raw, CENS_FRAMES);
   }
 
   private assemble(frames: number): { features: Features; grid: BeatGrid } {
+    const evidence = this.evidence(frames);
     const data = new Float32Array(frames * COLUMNS);
-    const smooth = cens(this.chromaRows.data.slice(0, frames * PITCH_CLASSES), CENS_FRAMES);
-    const envelope = this.fluxColumn(0, frames * SUBFRAMES);
-    const onset = new Float32Array(frames);
-    for (let f = 0; f < frames; f++) {
-      for (let c = 0; c < PITCH_CLASSES; c++) data[f * COLUMNS + c] = smooth[f * PITCH_CLASSES + c];
-      onset[f] = envelope[f * SUBFRAMES];
-    }
+    const onset = Float32Array.from({ length: frames }, (_, f) => evidence.all[f * SUBFRAMES]);
     const top = percentile(onset, ONSET_PERCENTILE);
-    if (top > 0) for (let f = 0; f < frames; f++) data[f * COLUMNS + ONSET] = Math.min(1, onset[f] / top);
-    const features: Features = { fps: spec.fps, names: spec.features.names, frames, data };
-    const grid = this.findGrid(envelope, smooth);
-    return { features: withGrid(features, grid), grid };
-  }
-
-  /** One column of the flux, moved so that its peaks stand at the sounds. */
-  private fluxColumn(band: number, count: number): Float32Array {
-    return Float32Array.from({ length: count }, (_, i) => {
-      const row = i - FLUX_DELAY;
-      return row < 0 || row >= this.fluxRows.count ? 0 : this.fluxRows.data[row * FLUX_BANDS + band];
-    });
-  }
-
-  private findGrid(envelope: Float32Array, smooth: Float32Array): BeatGrid {
-    const normal = normaliseEnvelope(envelope, FLUX_RATE);
-    if (!envelope.some((v) => v > 0)) return { tempo: 120, beatsPerBar: 4, beats: [], downbeats: [] };
-    const curve = followTempo(normal, FLUX_RATE);
-    const positions = trackBeats(normal, FLUX_RATE, curve);
-    const beats = positions.map((p) => p / FLUX_RATE);
-    const low = this.fluxColumn(1, envelope.length);
-    const peak = (values: ArrayLike<number>, p: number): number => {
-      let best = 0;
-      for (let i = Math.round(p) - 3; i <= Math.round(p) + 3; i++) best = Math.max(best, values[i] ?? 0);
-      return best;
-    };
-    const frames = smooth.length / PITCH_CLASSES;
-    const change = beats.map((b) => {
-      const period = 60 / 120;
-      const before = Math.max(0, Math.round((b - 0.5 * period) * spec.fps));
-      const after = Math.min(frames - 1, Math.round((b + 0.5 * period) * spec.fps));
-      let dot = 0;
-      for (let c = 0; c < PITCH_CLASSES; c++)
-        dot += smooth[before * PITCH_CLASSES + c] * smooth[after * PITCH_CLASSES + c];
-      return 1 - dot;
-    });
-    const bars = findBars({
-      onset: positions.map((p) => peak(envelope, p)),
-      low: positions.map((p) => peak(low, p)),
-      change,
-    });
-    const gaps = beats.slice(1).map((b, i) => b - beats[i]);
-    return {
-      tempo: gaps.length ? 60 / percentile(gaps, 0.5) : 120,
-      beatsPerBar: bars.beatsPerBar,
-      beats,
-      downbeats: beats.filter((_, i) => i % bars.beatsPerBar === bars.first),
-    };
+    for (let f = 0; f < frames; f++) {
+      data.set(evidence.chroma.subarray(f * PITCH_CLASSES, (f + 1) * PITCH_CLASSES), f * COLUMNS);
+      data[f * COLUMNS + ONSET] = top > 0 ? Math.min(1, onset[f] / top) : 0;
+    }
+    const grid = findGrid(evidence);
+    return { features: withGrid({ fps: spec.fps, names: spec.features.names, frames, data }, grid), grid };
   }
 }
 

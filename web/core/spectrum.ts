@@ -14,6 +14,8 @@ export class SpectrumAnalyser {
   private readonly cosines: Float64Array;
   private readonly sines: Float64Array;
   private readonly reversed: Uint32Array;
+  /** Twiddle factors of each radix-4 pass: w^2, w, w^3 (real, imaginary) for each step in a block. */
+  private readonly passes: Float64Array[];
 
   /** @throws RangeError for a size that is no power of two */
   constructor(size: number) {
@@ -33,6 +35,15 @@ export class SpectrumAnalyser {
       for (let b = 0; b < bits; b++) result |= ((i >> b) & 1) << (bits - 1 - b);
       return result;
     });
+    this.passes = [];
+    for (let span = bits % 2 === 1 ? 2 : 1; span < half; span *= 4) {
+      const turns = Array.from({ length: span }, (_, k) => (-2 * Math.PI * k) / (4 * span));
+      this.passes.push(
+        Float64Array.from(
+          turns.flatMap((t) => [2 * t, t, 3 * t].flatMap((angle) => [Math.cos(angle), Math.sin(angle)])),
+        ),
+      );
+    }
   }
 
   /**
@@ -54,23 +65,59 @@ export class SpectrumAnalyser {
     return this.amplitudes;
   }
 
-  /** In-place radix-2 FFT of `real`, `imaginary`, whose input is bit-reversed. */
+  /** In-place FFT of `real`, `imaginary`, whose input is bit-reversed: radix 4, after one radix-2 pass where the size asks for it. */
   private transform(length: number): void {
-    const { real, imaginary, cosines, sines, size } = this;
-    for (let span = 1; span < length; span *= 2) {
-      const step = size / (2 * span);
-      for (let k = 0; k < span; k++) {
-        const c = cosines[k * step];
-        const s = sines[k * step];
-        for (let even = k; even < length; even += 2 * span) {
-          const odd = even + span;
-          const re = real[odd] * c + imaginary[odd] * s;
-          const im = imaginary[odd] * c - real[odd] * s;
-          real[odd] = real[even] - re;
-          imaginary[odd] = imaginary[even] - im;
-          real[even] += re;
-          imaginary[even] += im;
-        }
+    let span = 1;
+    if (Math.log2(length) % 2 === 1) {
+      this.pairs(length);
+      span = 2;
+    }
+    for (const twiddles of this.passes) {
+      this.quadruples(length, span, twiddles);
+      span *= 4;
+    }
+  }
+
+  /** Radix-2 pass over neighbours. */
+  private pairs(length: number): void {
+    const { real, imaginary } = this;
+    for (let a = 0; a < length; a += 2) {
+      const re = real[a + 1];
+      const im = imaginary[a + 1];
+      real[a + 1] = real[a] - re;
+      imaginary[a + 1] = imaginary[a] - im;
+      real[a] += re;
+      imaginary[a] += im;
+    }
+  }
+
+  /** Radix-4 pass: two radix-2 passes (spans `span` and 2 `span`) in one, with 3 complex products per 4 numbers. */
+  private quadruples(length: number, span: number, twiddles: Float64Array): void {
+    const { real, imaginary } = this;
+    for (let block = 0; block < length; block += 4 * span) {
+      for (let k = 0, w = 0; k < span; k++, w += 6) {
+        const a = block + k;
+        const b = a + span;
+        const c = b + span;
+        const d = c + span;
+        const bRe = real[b] * twiddles[w] - imaginary[b] * twiddles[w + 1];
+        const bIm = real[b] * twiddles[w + 1] + imaginary[b] * twiddles[w];
+        const cRe = real[c] * twiddles[w + 2] - imaginary[c] * twiddles[w + 3];
+        const cIm = real[c] * twiddles[w + 3] + imaginary[c] * twiddles[w + 2];
+        const dRe = real[d] * twiddles[w + 4] - imaginary[d] * twiddles[w + 5];
+        const dIm = real[d] * twiddles[w + 5] + imaginary[d] * twiddles[w + 4];
+        const sumRe = real[a] + bRe;
+        const sumIm = imaginary[a] + bIm;
+        const lessRe = real[a] - bRe;
+        const lessIm = imaginary[a] - bIm;
+        real[a] = sumRe + (cRe + dRe);
+        imaginary[a] = sumIm + (cIm + dIm);
+        real[c] = sumRe - (cRe + dRe);
+        imaginary[c] = sumIm - (cIm + dIm);
+        real[b] = lessRe + (cIm - dIm);
+        imaginary[b] = lessIm - (cRe - dRe);
+        real[d] = lessRe - (cIm - dIm);
+        imaginary[d] = lessIm + (cRe - dRe);
       }
     }
   }
