@@ -1,0 +1,263 @@
+/** From a file to a song that can be danced to. */
+import { createDocument, type ProjectDocument } from '../../core/document';
+import { seedMotion } from '../../core/seed';
+import type { BeatGrid, Features } from '../../core/types';
+import { isAbort, messageOf, type Context } from '../context';
+import { hashBytes } from '../hash';
+import type { Song } from '../state';
+import { previewDance } from '../preview';
+import type { DanceActions } from './dance';
+
+/** A song and the dance that goes with it, kept for undo across songs. */
+interface Shelf {
+  song: Song;
+  dance: Context['state']['dance']['value'];
+}
+
+/** How a song comes in. */
+export interface OpenOptions {
+  name: string;
+  url?: string;
+  /** Play it and make a dance by itself: what a drop does and the automation API does not. */
+  start: boolean;
+  /** A document that this song belongs to (restore); otherwise the song begins a new one, unless it is the same song. */
+  document?: ProjectDocument;
+  /** Leave the document and its history alone: undo brought us here. */
+  keepHistory?: boolean;
+}
+
+/** Songs kept in memory beside the current one. */
+const SHELF_SIZE = 2;
+/** Larger files are not kept for the next visit. */
+const MAX_KEPT_BYTES = 80e6;
+
+/** Actions on songs. */
+export function songActions(context: Context, dance: DanceActions) {
+  const { state, services, history } = context;
+  const { player } = services;
+  const shelf = new Map<string, Shelf>();
+  let job: AbortController | null = null;
+  /** A project whose song is not here yet. */
+  let waiting: ProjectDocument | null = null;
+
+  const keepOnShelf = () => {
+    const song = state.song.value;
+    if (!song?.complete) return;
+    shelf.delete(song.reference.hash);
+    shelf.set(song.reference.hash, { song, dance: state.dance.value });
+    for (const hash of [...shelf.keys()].slice(0, -SHELF_SIZE)) shelf.delete(hash);
+  };
+
+  const show = (song: Song, shown: Shelf['dance']) => {
+    dance.cancel();
+    player.load(song.reference.duration, song.buffer);
+    state.song.value = song;
+    state.dance.value = shown;
+    state.report.value = null;
+    state.loop.value = null;
+    state.time.value = 0;
+    state.view.value = { start: 0, pixelsPerSecond: 0 };
+  };
+
+  const update = (change: Partial<Song>) => {
+    if (state.song.value) state.song.value = { ...state.song.value, ...change };
+  };
+
+  const isGenerated = () => state.dance.value?.kind === 'generated';
+
+  /** The starting clip on the beats so far: something dances from the first second. */
+  const preview = async (grid: BeatGrid, frames: number, signal: AbortSignal) => {
+    const clip = state.seedClip.value;
+    if (!clip || isGenerated()) return;
+    const motion = await previewDance(
+      (count, startTime) => seedMotion(clip, grid, count, { startTime }),
+      frames,
+      signal,
+    );
+    if (motion && !signal.aborted && !isGenerated()) {
+      state.dance.value = { motion, kind: 'preview', inputs: null, result: null };
+    }
+  };
+
+  const failed = (error: unknown, name: string): Error => {
+    if (isAbort(error)) return error as Error;
+    return new Error(`“${name}” could not be used. ${messageOf(error)}`);
+  };
+
+  async function open(file: Blob, options: OpenOptions): Promise<Song> {
+    job?.abort(new DOMException('Another song was opened.', 'AbortError'));
+    const own = (job = new AbortController());
+    const { signal } = own;
+    const before = { song: state.song.value, dance: state.dance.value, document: history.present };
+    let shown = false;
+    state.songJob.value = { name: options.name, stage: 'reading', fraction: 0 };
+    context.announce(`Reading ${options.name}.`);
+    try {
+      if (file.size === 0) throw new Error('The file is empty: choose another one.');
+      const bytes = await file.arrayBuffer();
+      const hash = await hashBytes(bytes);
+      signal.throwIfAborted();
+      state.songJob.value = { name: options.name, stage: 'decoding', fraction: 0 };
+      const { buffer, duration } = await services.listener.decode(bytes, options.name);
+      signal.throwIfAborted();
+
+      const reference = { name: options.name, hash, duration, ...(options.url ? { url: options.url } : {}) };
+      const fresh: Song = {
+        reference,
+        buffer,
+        waveform: null,
+        features: null,
+        grid: null,
+        complete: false,
+        demo: false,
+      };
+      const same = before.document.song?.hash === hash;
+      keepOnShelf();
+      show(fresh, same ? before.dance : null);
+      shown = true;
+      state.songJob.value = { name: options.name, stage: 'analysing', fraction: 0 };
+      if (options.start) void dance.loadModel().catch(() => undefined);
+
+      let started = false;
+      const begin = () => {
+        if (started) return;
+        started = true;
+        const given = options.document ?? (waiting?.song?.hash === hash ? waiting : null);
+        if (waiting === given) waiting = null;
+        if (!options.keepHistory) {
+          if (given) history.reset({ ...given, song: { ...given.song, ...reference } });
+          else if (!same) history.push(createDocument(reference, before.document.dials), 'New song');
+        }
+        context.sync();
+        if (!options.start) return;
+        player.setMuted(false);
+        player.play();
+      };
+      let lastPreview: Promise<void> = Promise.resolve();
+      const onHead = (features: Features, grid: BeatGrid) => {
+        if (signal.aborted) return;
+        update({ features, grid });
+        lastPreview = preview(grid, Math.min(state.frames.value, features.frames), signal);
+        void lastPreview.then(() => {
+          if (!signal.aborted) begin();
+        });
+      };
+      const analysis = await services.listener.analyse(
+        buffer,
+        {
+          onProgress: (fraction, waveform) => {
+            if (signal.aborted) return;
+            state.songJob.value = { name: options.name, stage: 'analysing', fraction };
+            if (waveform) update({ waveform });
+          },
+          onHead,
+        },
+        signal,
+      );
+      signal.throwIfAborted();
+      update({ features: analysis.features, grid: analysis.grid, waveform: analysis.waveform, complete: true });
+      await lastPreview;
+      await preview(analysis.grid, state.frames.value, signal);
+      signal.throwIfAborted();
+      begin();
+      state.songJob.value = null;
+      context.announce(`${options.name}: ${Math.round(analysis.grid.tempo)} beats per minute.`);
+      if (file.size <= MAX_KEPT_BYTES) {
+        services.storage.saveSong(hash, file).catch(() => undefined); // the document's own autosave tells about a full disk
+      }
+      return state.song.value!;
+    } catch (error) {
+      if (job === own) {
+        state.songJob.value = null;
+        if (shown) rollBack(before);
+      }
+      throw failed(error, options.name);
+    }
+  }
+
+  function rollBack(before: { song: Song | null; dance: Shelf['dance']; document: ProjectDocument }): void {
+    if (before.song) show(before.song, before.dance);
+    if (history.present !== before.document) {
+      if (history.undoLabel === 'New song') history.undo();
+      if (history.present !== before.document) history.push(before.document, 'Back to the former song');
+    }
+    context.sync();
+  }
+
+  async function fetchSong(address: string): Promise<Blob> {
+    let response: Response;
+    try {
+      response = await fetch(address);
+    } catch {
+      throw new Error(
+        `The song at ${address} could not be fetched: the address is wrong, or its server does not allow it.`,
+      );
+    }
+    if (!response.ok) throw new Error(`The song at ${address} could not be fetched (${response.status}).`);
+    return response.blob();
+  }
+
+  return {
+    /** Opens a song and rejects with a clear message when that fails; what was there before stays. */
+    openSong: open,
+
+    /** What a drop or the file chooser does: opens the song, plays it and makes a dance; errors become notices. */
+    async dropSong(file: File): Promise<void> {
+      try {
+        await open(file, { name: file.name, start: true });
+        await dance.generateForPage();
+      } catch (error) {
+        if (!isAbort(error)) context.notify('error', messageOf(error));
+      }
+    },
+
+    /** Loads a song for the automation API. */
+    async loadSong(source: File | Blob | string): Promise<Song> {
+      if (typeof source === 'string') {
+        const file = await fetchSong(source);
+        const name = decodeURIComponent(new URL(source, location.href).pathname.split('/').pop() || 'song');
+        return open(file, { name, url: source, start: false });
+      }
+      if (!(source instanceof Blob)) throw new Error('loadSong needs a File, a Blob or an address.');
+      return open(source, { name: source instanceof File ? source.name : 'song', start: false });
+    },
+
+    /** Stops reading a song and goes back to the former one. */
+    cancelSong(): void {
+      job?.abort(new DOMException('Cancelled.', 'AbortError'));
+    },
+
+    /** After undo or redo across songs: brings the sound of the document's song back. */
+    async followDocument(): Promise<void> {
+      const wanted = history.present.song;
+      if (state.songJob.value || !wanted || wanted.hash === state.song.value?.reference.hash) return;
+      const kept = shelf.get(wanted.hash);
+      keepOnShelf();
+      if (kept) {
+        show(kept.song, kept.dance);
+        return;
+      }
+      const blob = await services.storage.loadSong(wanted.hash).catch(() => null);
+      if (!blob) {
+        context.notify('info', `Drop “${wanted.name}” again to dance to it: its sound is not kept here.`);
+        return;
+      }
+      await open(blob, { name: wanted.name, start: false, keepHistory: true }).catch((error: unknown) => {
+        if (!isAbort(error)) context.notify('error', messageOf(error));
+      });
+    },
+
+    /** Opens this project as soon as its song is dropped. */
+    awaitSong(document: ProjectDocument): void {
+      waiting = document;
+    },
+
+    /** Puts a song on stage that comes with its dance (the demo, a restored project). */
+    showSong: show,
+    updateSong: update,
+    fetchSong,
+  };
+}
+
+/** Actions on songs. */
+export type SongActions = ReturnType<typeof songActions>;

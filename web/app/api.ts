@@ -1,0 +1,92 @@
+/** `window.posebeat`: the public automation API, for embedders, demo links and headless checks. */
+import spec from '../core/spec.json';
+import { motionToAxisAngle } from '../core/motion';
+import type { ProjectDocument } from '../core/document';
+import type { GenerateCall, GenerateSummary } from './actions/dance';
+import type { DanceReport } from './report';
+import type { Store } from './store';
+
+/** What `exportAs` knows. */
+export type ExportFormat = 'bvh' | 'glb' | 'npz' | 'curves' | 'project';
+
+/** The public API. Rejected input throws an Error that says what is wrong, and leaves the document as it was. */
+export interface PosebeatApi {
+  /** Resolves when the page can be driven. */
+  ready: Promise<void>;
+  /** Decodes and analyses a song; a string is an address. All times in seconds. */
+  loadSong(
+    source: File | Blob | string,
+  ): Promise<{ duration: number; tempo: number; beats: number[]; downbeats: number[] }>;
+  /** Music features of the song, frames x 15. */
+  features(): { fps: number; names: string[]; data: Float32Array };
+  /** Replaces the key poses: time in seconds, 24 x 3 axis-angle radians each. */
+  setKeyPoses(keys: { time: number; rotations: ArrayLike<number>; name?: string }[]): void;
+  suggestKeyPoses(options?: {
+    density?: 'beat' | 'half' | 'bar';
+    range?: { start: number; end: number };
+    variation?: number;
+  }): Promise<{ time: number; rotations: number[] }[]>;
+  /** Makes the dance; a later call cancels an earlier one. */
+  generate(options?: GenerateCall): Promise<GenerateSummary>;
+  /** The dance: rotations frames x 72 axis-angle radians, root frames x 3 metres. */
+  motion(): { fps: number; rotations: Float32Array; root: Float32Array };
+  report(): DanceReport;
+  exportAs(format: ExportFormat): Promise<Blob>;
+  shareLink(): Promise<string>;
+  /** A copy of the project document. */
+  document(): ProjectDocument;
+}
+
+declare global {
+  interface Window {
+    posebeat: PosebeatApi;
+  }
+}
+
+/** Makes the API of a page. */
+export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
+  const { state } = store;
+  const onStage = () => {
+    const dance = state.dance.value;
+    if (!dance || dance.kind === 'preview') throw new Error('There is no dance yet: call generate first.');
+    return dance.motion;
+  };
+  return {
+    ready,
+    async loadSong(source) {
+      const song = await store.loadSong(source);
+      const grid = state.grid.value ?? song.grid!;
+      return {
+        duration: song.reference.duration,
+        tempo: grid.tempo,
+        beats: [...grid.beats],
+        downbeats: [...grid.downbeats],
+      };
+    },
+    features() {
+      const song = state.song.value;
+      if (!song?.complete || !song.features) throw new Error('There is no analysed song yet: call loadSong first.');
+      return { fps: song.features.fps, names: [...spec.features.names], data: song.features.data.slice() };
+    },
+    setKeyPoses: (keys) => store.setKeyPoses(keys),
+    suggestKeyPoses: () => Promise.reject(new Error('Suggesting key poses is not available yet.')),
+    generate: (options = {}) => store.generate(options),
+    motion() {
+      const motion = onStage();
+      return { fps: motion.fps, rotations: motionToAxisAngle(motion), root: motion.root.slice() };
+    },
+    report() {
+      onStage();
+      return store.reportNow();
+    },
+    async exportAs(format) {
+      if (format === 'project') return store.projectBlob();
+      if (['bvh', 'glb', 'npz', 'curves'].includes(format)) {
+        throw new Error(`Export as ${format} is not available yet: use "project".`);
+      }
+      throw new Error(`There is no export format "${String(format)}": use "project".`);
+    },
+    shareLink: () => Promise.reject(new Error('Share links are not available yet: use exportAs("project").')),
+    document: () => structuredClone(state.document.value),
+  };
+}

@@ -1,0 +1,50 @@
+/** What every action works on. */
+import type { Player } from '../audio/player';
+import type { ProjectDocument } from '../core/document';
+import type { History } from '../core/history';
+import type { BeatGrid, Features } from '../core/types';
+import type { Backend } from '../workers/protocol';
+import type { Assets, Engine, Listener, Storage } from './ports';
+import type { State } from './state';
+
+/** The rooms around the app. */
+export interface Services {
+  player: Player;
+  listener: Listener;
+  engine: Engine;
+  storage: Storage;
+  assets: Assets;
+  /** From `?backend=`. */
+  forcedBackend?: Backend;
+}
+
+/** Shared by all groups of actions. */
+export interface Context {
+  state: State;
+  services: Services;
+  history: History<ProjectDocument>;
+  /** Shows history's present in the state; to be called after every change of history. */
+  sync(): void;
+  /** One undoable change of the document. */
+  change(label: string, edit: (document: ProjectDocument) => ProjectDocument): void;
+  notify(kind: 'error' | 'info', text: string): void;
+  /** For screen readers. */
+  announce(text: string): void;
+  /** Features and beats of the whole song, waiting for the analysis where it still runs. */
+  analysed(): Promise<{ features: Features; grid: BeatGrid }>;
+}
+
+/** True for the error of a cancelled job. */
+export function isAbort(error: unknown): boolean {
+  return error instanceof Error && error.name === 'AbortError';
+}
+
+/** The message of whatever was thrown. */
+export function messageOf(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
+/** Lets the browser paint and handle input before the work goes on. */
+export function breathe(): Promise<void> {
+  return new Promise((resolve) => setTimeout(resolve, 0));
+}

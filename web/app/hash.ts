@@ -1,0 +1,21 @@
+/**
+ * Identity of a song's bytes.
+ *
+ * @returns SHA-256 in hex; on a page without a secure context, where the browser hides SHA-256, a 64-bit FNV-1a with the length.
+ */
+export async function hashBytes(bytes: ArrayBuffer): Promise<string> {
+  const subtle = globalThis.crypto?.subtle as SubtleCrypto | undefined;
+  if (subtle) {
+    const digest = new Uint8Array(await subtle.digest('SHA-256', bytes));
+    return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
+  }
+  const view = new Uint8Array(bytes);
+  let low = 0x811c9dc5;
+  let high = 0xcbf29ce4;
+  for (let i = 0; i < view.length; i += 1) {
+    low = Math.imul(low ^ view[i], 0x01000193);
+    high = Math.imul(high ^ view[view.length - 1 - i], 0x01000193);
+  }
+  const hex = (value: number) => (value >>> 0).toString(16).padStart(8, '0');
+  return `fnv-${hex(high)}${hex(low)}-${view.length}`;
+}

@@ -1,0 +1,107 @@
+/** What the app needs from the rooms around it; `main.ts` plugs the real ones in, tests plug in their own. */
+import type { BeatGrid, Features, KeyPose, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
+import type { Backend, GenerateOptions } from '../workers/protocol';
+import type { ProjectDocument } from '../core/document';
+
+/** A song as the browser decoded it. */
+export interface DecodedSong {
+  buffer: AudioBuffer;
+  /** Seconds. */
+  duration: number;
+}
+
+/** What the analyse worker tells on its way. */
+export interface AnalyseHooks {
+  onProgress?: (fraction: number, waveform?: Waveform) => void;
+  /** Features and beats of the first seconds. */
+  onHead?: (features: Features, grid: BeatGrid) => void;
+}
+
+/** The whole analysis of a song. */
+export interface Analysis {
+  features: Features;
+  grid: BeatGrid;
+  waveform: Waveform;
+  milliseconds: number;
+}
+
+/** How the loaded model runs. */
+export interface ModelInfo {
+  backend: Backend;
+  threads: number;
+  model: string;
+  /** Why this backend, in a sentence. */
+  reason: string;
+}
+
+/** Progress of loading the model. */
+export interface LoadProgress {
+  fraction: number;
+  bytes: number;
+  totalBytes: number;
+  cached: boolean;
+}
+
+/** A dance to be made. */
+export interface DanceRequest {
+  features: Features;
+  grid: BeatGrid;
+  frames: number;
+  keyPoses: KeyPose[];
+  seedClip: SeedClip;
+  options: GenerateOptions;
+  range?: { from: number; to: number };
+  previous?: Motion;
+}
+
+/** A finished dance. */
+export interface DanceResult {
+  motion: Motion;
+  backend: Backend;
+  model: string;
+  windows: number;
+  milliseconds: number;
+}
+
+/** The generate worker, seen from the app. */
+export interface Engine {
+  /** Loads the model once; asking again for the same backend is free. */
+  load(backend: Backend | undefined, onProgress: (progress: LoadProgress) => void): Promise<ModelInfo>;
+  /** Rejects with an AbortError when `signal` fires. */
+  generate(
+    request: DanceRequest,
+    onPartial: (motion: Motion, fraction: number, windows: number) => void,
+    signal: AbortSignal,
+  ): Promise<DanceResult>;
+}
+
+/** Songs to sound and features. */
+export interface Listener {
+  decode(bytes: ArrayBuffer, name: string): Promise<DecodedSong>;
+  /** Rejects with an AbortError when `signal` fires. */
+  analyse(buffer: AudioBuffer, hooks: AnalyseHooks, signal: AbortSignal): Promise<Analysis>;
+}
+
+/** The browser's own storage; every method tolerates its absence by rejecting. */
+export interface Storage {
+  saveDocument(document: ProjectDocument): Promise<void>;
+  /** The dance goes with the song of this hash. */
+  saveDance(hash: string, motion: Motion): Promise<void>;
+  saveSong(hash: string, song: Blob): Promise<void>;
+  loadSong(hash: string): Promise<Blob | null>;
+  load(): Promise<{ document: unknown; dance: { hash: string; motion: Motion } | null } | null>;
+}
+
+/** The opening demo. */
+export interface Demo {
+  document: ProjectDocument;
+  motion: Motion;
+  songUrl: string;
+}
+
+/** Files that come with the page. */
+export interface Assets {
+  poses(): Promise<LibraryPose[]>;
+  seeds(): Promise<SeedClip[]>;
+  demo(): Promise<Demo>;
+}

@@ -1,0 +1,149 @@
+/** The store: signals, and the only actions that write them. */
+import { batch, effect } from '@preact/signals';
+import { createDocument, type ProjectDocument } from '../core/document';
+import { History } from '../core/history';
+import type { BeatGrid, Features } from '../core/types';
+import { danceActions } from './actions/dance';
+import { keyActions } from './actions/keys';
+import { playbackActions } from './actions/playback';
+import { poseActions } from './actions/pose';
+import { projectActions } from './actions/project';
+import { songActions } from './actions/song';
+import { viewActions } from './actions/view';
+import type { Context, Services } from './context';
+import type { Measure } from './report-client';
+import { createState } from './state';
+
+/** Autosave waits until nothing changed for this long, milliseconds. */
+const AUTOSAVE_DELAY = 600;
+/** Info notices go by themselves, milliseconds; errors stay until dismissed. */
+const INFO_LIFETIME = 7000;
+
+/** Puts state and actions together. */
+export function createStore(services: Services, measure: Measure) {
+  const state = createState();
+  const history = new History<ProjectDocument>(createDocument());
+  let notices = 0;
+
+  const context: Context = {
+    state,
+    services,
+    history,
+    sync() {
+      batch(() => {
+        state.document.value = history.present;
+        state.undoLabel.value = history.undoLabel;
+        state.redoLabel.value = history.redoLabel;
+        const ids = new Set(history.present.keyPoses.map((key) => key.id));
+        const chosen = [...state.selection.value].filter((id) => ids.has(id));
+        if (chosen.length !== state.selection.value.size) state.selection.value = new Set(chosen);
+      });
+    },
+    change(label, edit) {
+      history.push(edit(history.present), label);
+      context.sync();
+    },
+    notify(kind, text) {
+      const id = (notices += 1);
+      state.notices.value = [...state.notices.value.filter((notice) => notice.text !== text), { id, kind, text }];
+      if (kind === 'info') {
+        setTimeout(
+          () => (state.notices.value = state.notices.value.filter((notice) => notice.id !== id)),
+          INFO_LIFETIME,
+        );
+      }
+    },
+    announce: (text) => (state.announcement.value = text),
+    analysed: () => analysed(),
+  };
+
+  const dance = danceActions(context, measure);
+  const keys = keyActions(context);
+  const playback = playbackActions(context);
+  const pose = poseActions(context, keys);
+  const songs = songActions(context, dance);
+  const project = projectActions(context, songs, dance);
+  const view = viewActions(context);
+
+  /** Features and beats of the whole song, waiting for the analysis where it still runs. */
+  function analysed(): Promise<{ features: Features; grid: BeatGrid }> {
+    return new Promise((resolve, reject) => {
+      const stop = effect(() => {
+        const song = state.song.value;
+        if (song?.complete && song.features && song.grid) {
+          resolve({ features: song.features, grid: song.grid });
+          queueMicrotask(() => stop());
+        } else if (!song) {
+          reject(new Error('There is no song yet: drop one first.'));
+          queueMicrotask(() => stop());
+        }
+      });
+    });
+  }
+
+  /** Undo in the pose editor works on the pose, elsewhere on the project. */
+  const undo = () => {
+    if (state.draft.value) pose.undoPose();
+    else {
+      keys.undo();
+      void songs.followDocument();
+    }
+  };
+  const redo = () => {
+    if (state.draft.value) pose.redoPose();
+    else {
+      keys.redo();
+      void songs.followDocument();
+    }
+  };
+
+  autosave();
+
+  function autosave(): void {
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    let told = false;
+    effect(() => {
+      const document = state.document.value;
+      if (!state.ready.value || !document.song) return;
+      clearTimeout(timer);
+      timer = setTimeout(() => {
+        services.storage.saveDocument(document).catch(() => {
+          if (told) return;
+          told = true;
+          context.notify(
+            'info',
+            'This browser does not keep your work (private window or full disk): save the project before you leave.',
+          );
+        });
+      }, AUTOSAVE_DELAY);
+    });
+  }
+
+  /** Resolves when the page has opened. */
+  const whenReady = () =>
+    new Promise<void>((resolve) => {
+      const stop = effect(() => {
+        if (!state.ready.value) return;
+        resolve();
+        queueMicrotask(() => stop());
+      });
+    });
+
+  return {
+    state,
+    ...dance,
+    ...keys,
+    ...playback,
+    ...pose,
+    ...songs,
+    ...project,
+    ...view,
+    undo,
+    redo,
+    whenReady,
+    notify: context.notify,
+  };
+}
+
+/** State and actions of the page. */
+export type Store = ReturnType<typeof createStore>;

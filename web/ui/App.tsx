@@ -1,0 +1,33 @@
+import type { Store } from '../app/store';
+import { DropOverlay } from './DropOverlay';
+import { HelpOverlay } from './HelpOverlay';
+import { Inspector } from './inspector/Inspector';
+import { Notices } from './Notices';
+import { StageView } from './StageView';
+import { StoreContext } from './store-context';
+import { ThumbnailsContext, type Thumbnails } from './thumbs';
+import { Timeline } from './timeline/Timeline';
+import { TopBar } from './TopBar';
+import { Transport } from './Transport';
+
+/** The whole page: one stage, one timeline, one inspector. */
+export function App({ store, thumbnails }: { store: Store; thumbnails: Thumbnails }) {
+  return (
+    <StoreContext.Provider value={store}>
+      <ThumbnailsContext.Provider value={thumbnails}>
+        <div class="app">
+          <TopBar />
+          <StageView />
+          <Transport />
+          <section class="timeline" aria-label="Timeline">
+            <Timeline />
+          </section>
+          <Inspector />
+          <Notices />
+          <HelpOverlay />
+          <DropOverlay />
+        </div>
+      </ThumbnailsContext.Provider>
+    </StoreContext.Provider>
+  );
+}

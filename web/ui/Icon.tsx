@@ -1,0 +1,80 @@
+import check from 'lucide-static/icons/check.svg?raw';
+import dices from 'lucide-static/icons/dices.svg?raw';
+import download from 'lucide-static/icons/download.svg?raw';
+import flip from 'lucide-static/icons/flip-horizontal-2.svg?raw';
+import folder from 'lucide-static/icons/folder-open.svg?raw';
+import help from 'lucide-static/icons/circle-question-mark.svg?raw';
+import info from 'lucide-static/icons/info.svg?raw';
+import maximize from 'lucide-static/icons/move-horizontal.svg?raw';
+import music from 'lucide-static/icons/music.svg?raw';
+import pause from 'lucide-static/icons/pause.svg?raw';
+import pencil from 'lucide-static/icons/pencil.svg?raw';
+import person from 'lucide-static/icons/person-standing.svg?raw';
+import pin from 'lucide-static/icons/map-pin-plus-inside.svg?raw';
+import play from 'lucide-static/icons/play.svg?raw';
+import plus from 'lucide-static/icons/plus.svg?raw';
+import redo from 'lucide-static/icons/redo-2.svg?raw';
+import repeat from 'lucide-static/icons/repeat.svg?raw';
+import reset from 'lucide-static/icons/rotate-ccw.svg?raw';
+import search from 'lucide-static/icons/search.svg?raw';
+import skipBack from 'lucide-static/icons/skip-back.svg?raw';
+import skipForward from 'lucide-static/icons/skip-forward.svg?raw';
+import sliders from 'lucide-static/icons/sliders-horizontal.svg?raw';
+import sparkles from 'lucide-static/icons/sparkles.svg?raw';
+import trash from 'lucide-static/icons/trash-2.svg?raw';
+import undo from 'lucide-static/icons/undo-2.svg?raw';
+import volume from 'lucide-static/icons/volume-2.svg?raw';
+import volumeOff from 'lucide-static/icons/volume-x.svg?raw';
+import warning from 'lucide-static/icons/triangle-alert.svg?raw';
+import close from 'lucide-static/icons/x.svg?raw';
+import zoomIn from 'lucide-static/icons/zoom-in.svg?raw';
+import zoomOut from 'lucide-static/icons/zoom-out.svg?raw';
+
+const ICONS = {
+  check,
+  close,
+  dices,
+  download,
+  flip,
+  folder,
+  help,
+  info,
+  maximize,
+  music,
+  pause,
+  pencil,
+  person,
+  pin,
+  play,
+  plus,
+  redo,
+  repeat,
+  reset,
+  search,
+  skipBack,
+  skipForward,
+  sliders,
+  sparkles,
+  trash,
+  undo,
+  volume,
+  volumeOff,
+  warning,
+  zoomIn,
+  zoomOut,
+};
+
+/** Names of the icons. */
+export type IconName = keyof typeof ICONS;
+
+/** A decorative icon; the button around it carries the name. */
+export function Icon({ name, size = 20 }: { name: IconName; size?: number }) {
+  return (
+    <span
+      class="icon"
+      aria-hidden="true"
+      style={{ width: size, height: size }}
+      dangerouslySetInnerHTML={{ __html: ICONS[name] }}
+    />
+  );
+}

@@ -1,0 +1,25 @@
+import { Icon } from './Icon';
+import { useStore } from './store-context';
+
+/** Messages to the visitor; errors stay until dismissed. */
+export function Notices() {
+  const store = useStore();
+  return (
+    <>
+      <div class="notices" role="region" aria-label="Messages">
+        {store.state.notices.value.map(({ id, kind, text }) => (
+          <div key={id} class={`notice ${kind}`} role={kind === 'error' ? 'alert' : 'status'}>
+            <Icon name={kind === 'error' ? 'warning' : 'info'} />
+            <span>{text}</span>
+            <button type="button" class="tool" aria-label="Dismiss" onClick={() => store.dismiss(id)}>
+              <Icon name="close" size={16} />
+            </button>
+          </div>
+        ))}
+      </div>
+      <div class="visually-hidden" aria-live="polite">
+        {store.state.announcement.value}
+      </div>
+    </>
+  );
+}

@@ -1,0 +1,216 @@
+import { useEffect, useRef } from 'preact/hooks';
+import { effect } from '@preact/signals';
+import { framePose, type MutableFramePose } from '../core/motion';
+import type { Stage } from '../scene/stage';
+import type { Store } from '../app/store';
+import { Icon } from './Icon';
+import { chooseFile } from './files';
+import { PoseBar } from './PoseBar';
+import { useStore } from './store-context';
+
+/** The stage and what lies over it. */
+export function StageView() {
+  const store = useStore();
+  const container = useRef<HTMLDivElement>(null);
+
+  useEffect(() => {
+    let stop: () => void = () => undefined;
+    let gone = false;
+    void startStage(container.current!, store).then((dispose) => {
+      if (gone) dispose();
+      else stop = dispose;
+    });
+    return () => {
+      gone = true;
+      stop();
+    };
+  }, [store]);
+
+  const { draft, song } = store.state;
+  return (
+    <main class={`stage ${draft.value ? 'posing' : ''}`} aria-label="Stage">
+      <div class="stage-canvas" ref={container} />
+      {draft.value ? <PoseBar /> : (!song.value || song.value.demo) && <Welcome />}
+      <SoundChip />
+      <WorkChip />
+    </main>
+  );
+}
+
+/** One line of what this is, one target of what to do. */
+function Welcome() {
+  const store = useStore();
+  const busy = store.state.songJob.value !== null;
+  return (
+    <div class="welcome">
+      <h1>
+        Your song, your poses, <em>a dance.</em>
+      </h1>
+      <p>Drop a song, place a few poses on its beats, and a figure dances through them.</p>
+      {!busy && (
+        <button type="button" class="drop-target" onClick={() => chooseFile(store)}>
+          <Icon name="music" size={28} />
+          <span>
+            <strong>Drop a song</strong>
+            <small>or choose a file. It never leaves your device.</small>
+          </span>
+        </button>
+      )}
+    </div>
+  );
+}
+
+function SoundChip() {
+  const store = useStore();
+  const { muted, playing } = store.state;
+  if (!muted.value || !playing.value) return null;
+  return (
+    <button type="button" class="chip sound-chip" onClick={() => store.toggleMute()}>
+      <Icon name="volumeOff" />
+      Tap for sound
+    </button>
+  );
+}
+
+/** What is being worked on, with the way to stop it. */
+function WorkChip() {
+  const store = useStore();
+  const { songJob, generation } = store.state;
+  const job = songJob.value;
+  const made = generation.value;
+  if (job) {
+    const text = { reading: 'Reading', decoding: 'Decoding', analysing: 'Finding the beats of' }[job.stage];
+    return (
+      <Work text={`${text} “${job.name}”`} fraction={job.fraction} tone="music" onCancel={() => store.cancelSong()} />
+    );
+  }
+  if (made.status === 'idle') return null;
+  if (made.status === 'loading') {
+    const size = made.totalBytes > 0 && !made.cached ? ` (${(made.totalBytes / 1e6).toFixed(0)} MB, only once)` : '';
+    return (
+      <Work
+        text={`Loading the dancer’s mind${size}`}
+        fraction={made.fraction}
+        tone="motion"
+        onCancel={() => store.cancel()}
+      />
+    );
+  }
+  return <Work text="Making the dance" fraction={made.fraction} tone="motion" onCancel={() => store.cancel()} />;
+}
+
+function Work(props: { text: string; fraction: number; tone: 'music' | 'motion'; onCancel: () => void }) {
+  const percent = Math.round(props.fraction * 100);
+  return (
+    <div class={`chip work-chip tone-${props.tone}`}>
+      <span class="work-text">{props.text}</span>
+      <span class="work-percent">{percent}%</span>
+      <div
+        class="bar"
+        role="progressbar"
+        aria-label={props.text}
+        aria-valuemin={0}
+        aria-valuemax={100}
+        aria-valuenow={percent}
+      >
+        <div style={{ width: `${percent}%` }} />
+      </div>
+      <button type="button" class="quiet" onClick={props.onCancel}>
+        Cancel
+      </button>
+    </div>
+  );
+}
+
+/** Ties the stage to the store: the clock moves the figure, the editor's draft is on the gizmo. */
+async function startStage(container: HTMLElement, store: Store): Promise<() => void> {
+  const { state } = store;
+  const pose: MutableFramePose = { root: new Float32Array(3), quaternions: new Float32Array(96) };
+  let stage: Stage | null = null;
+  let lastBeat = -1;
+
+  const onFrame = () => {
+    const time = store.tick();
+    store.followTime(time);
+    const motion = motionAt(store, time);
+    if (stage && motion) stage.show(framePose(motion, time, pose));
+    const beat = state.playing.value ? beatIndex(store, time) : -1;
+    if (beat >= 0 && beat !== lastBeat) stage?.pulse(isDownbeat(store, beat) ? 0.9 : 0.45);
+    lastBeat = beat;
+  };
+
+  try {
+    const { createStage } = await import('../scene/stage');
+    stage = createStage(container);
+    await stage.ready;
+  } catch (error) {
+    store.notify('error', error instanceof Error ? error.message : 'The 3D stage could not start.');
+  }
+  if (!stage) return frameLoop(onFrame); // no picture, but the sound and the timeline go on
+
+  const opened = stage;
+  const undo: (() => void)[] = [opened.beforeFrame(onFrame)];
+  let own: readonly number[] | null = null;
+  undo.push(
+    opened.onPoseChange((rotations, phase) => {
+      own = rotations;
+      store.changePose(rotations, phase);
+    }),
+    opened.onSelect((joint) => store.selectJoint(joint)),
+    effect(() => {
+      const draft = state.draft.value;
+      opened.setMode(draft ? 'pose' : 'dance');
+      if (!draft) {
+        own = null;
+        return;
+      }
+      // What the gizmo itself just did must not be loaded back under its drag.
+      if (!own || !sameNumbers(own, draft.rotations)) {
+        own = draft.rotations;
+        opened.editPose(draft.rotations);
+      }
+      opened.selectJoint(draft.joint);
+    }),
+  );
+  return () => {
+    for (const stop of undo) stop();
+    opened.dispose();
+  };
+}
+
+/** The new dance as far as it is made, the former one beyond. */
+function motionAt(store: Store, time: number) {
+  const partial = store.state.partial.value;
+  if (partial && time * partial.fps < partial.frames) return partial;
+  const dance = store.state.dance.value;
+  return dance && dance.motion.frames > 0 ? dance.motion : null;
+}
+
+function beatIndex(store: Store, time: number): number {
+  const beats = store.state.grid.value?.beats ?? [];
+  let low = 0;
+  let high = beats.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (beats[middle] <= time) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
+function isDownbeat(store: Store, beat: number): boolean {
+  const grid = store.state.grid.value!;
+  return grid.downbeats.includes(grid.beats[beat]);
+}
+
+function sameNumbers(a: readonly number[], b: readonly number[]): boolean {
+  return a.length === b.length && a.every((value, i) => value === b[i]);
+}
+
+function frameLoop(callback: () => void): () => void {
+  let request = requestAnimationFrame(function again() {
+    request = requestAnimationFrame(again);
+    callback();
+  });
+  return () => cancelAnimationFrame(request);
+}

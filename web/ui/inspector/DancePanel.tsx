@@ -1,0 +1,128 @@
+import { useStore } from '../store-context';
+import { Icon } from '../Icon';
+import { PosePicture } from '../thumbs';
+import { Report } from './Report';
+import { Slider } from './Slider';
+
+const strengthText = (value: number) =>
+  value >= 0.995
+    ? 'Every key pose is hit exactly.'
+    : value < 0.005
+      ? 'The network alone: poses are hints.'
+      : 'Near your poses, a little freer.';
+const variationText = (value: number) =>
+  value < 0.05 ? 'As plain as it gets.' : value < 0.5 ? 'Some life between your poses.' : 'The dancer improvises.';
+
+/** Settings of the next dance, and how good the last one is. */
+export function DancePanel() {
+  const store = useStore();
+  const { document, loop, generation, dance } = store.state;
+  const { dials } = document.value;
+  const range = loop.value;
+  return (
+    <>
+      <SeedClips />
+      <section class="block" aria-label="Settings">
+        <Slider
+          label="Key strength"
+          value={dials.keyStrength}
+          text={strengthText}
+          tone="key"
+          onCommit={(value) => store.setDial('keyStrength', value)}
+        />
+        <Slider
+          label="Variation"
+          value={dials.variation}
+          text={variationText}
+          tone="motion"
+          onCommit={(value) => store.setDial('variation', value)}
+        />
+        <div class="seed-row">
+          <label class="field inline">
+            <span>Take</span>
+            <input
+              type="number"
+              min={0}
+              max={2147483647}
+              step={1}
+              value={String(dials.seed)}
+              onChange={(event) => {
+                const seed = Number(event.currentTarget.value);
+                if (Number.isInteger(seed) && seed >= 0 && seed < 2 ** 31) store.setDial('seed', seed);
+                else event.currentTarget.value = String(dials.seed);
+              }}
+            />
+          </label>
+          <button
+            type="button"
+            class="secondary"
+            title="Another take: the same poses, another dance"
+            onClick={() => store.setDial('seed', 1 + Math.floor(Math.random() * 9999))}
+          >
+            <Icon name="dices" />
+            Roll
+          </button>
+        </div>
+        {range && dance.value && dance.value.kind !== 'preview' && (
+          <button
+            type="button"
+            class="secondary full"
+            disabled={generation.value.status !== 'idle'}
+            onClick={() => void store.generateForPage(range)}
+          >
+            <Icon name="repeat" />
+            Generate only the loop
+          </button>
+        )}
+      </section>
+      <Report />
+      <Engine />
+    </>
+  );
+}
+
+function SeedClips() {
+  const store = useStore();
+  const { seeds, seedClip } = store.state;
+  return (
+    <fieldset class="seeds">
+      <legend>Starts as</legend>
+      <div class="seed-grid">
+        {seeds.value.map((clip) => (
+          <label key={clip.id} class="seed" title={clip.description}>
+            <input
+              type="radio"
+              name="seed-clip"
+              checked={seedClip.value?.id === clip.id}
+              onChange={() => store.setDial('seedClip', clip.id)}
+            />
+            <PosePicture rotations={clip.poses[0]} />
+            <span>{clip.name}</span>
+          </label>
+        ))}
+      </div>
+      {seedClip.value && <p class="hint">{seedClip.value.description}</p>}
+    </fieldset>
+  );
+}
+
+/** Where the model runs and why. */
+function Engine() {
+  const { model } = useStore().state;
+  const info = model.value;
+  const where = info
+    ? info.backend === 'webgpu'
+      ? 'the graphics card (WebGPU)'
+      : `the processor (WASM, ${info.threads} thread${info.threads === 1 ? '' : 's'})`
+    : null;
+  return (
+    <p class="engine" title={info?.reason}>
+      <Icon name="info" size={16} />
+      <span>
+        {where
+          ? `Runs on ${where}. ${info!.reason}`
+          : 'The model loads with your first dance, and stays on this device.'}
+      </span>
+    </p>
+  );
+}

@@ -1,0 +1,139 @@
+/** One table of keys: it feeds the bindings, the tooltips and the help overlay. */
+import type { Store } from '../app/store';
+
+/** One action and its keys. */
+export interface Shortcut {
+  id: string;
+  /** `Mod` is Ctrl, or Cmd on a Mac. A printable key stands for itself, whatever Shift it needs. */
+  keys: readonly string[];
+  label: string;
+  group: 'Play' | 'Key poses' | 'Pose editor' | 'View' | 'Project';
+  run(store: Store): void;
+  /** Works while a text field has the focus. */
+  everywhere?: boolean;
+}
+
+const selectedOrHere = (store: Store): ReadonlySet<string> => {
+  const { selection, document, time } = store.state;
+  if (selection.value.size > 0) return selection.value;
+  const here = document.value.keyPoses.find((key) => Math.abs(key.time - time.value) < 1 / 30);
+  return new Set(here ? [here.id] : []);
+};
+
+/** All shortcuts, in the order of the help overlay. */
+export const SHORTCUTS: readonly Shortcut[] = [
+  { id: 'play', keys: ['Space'], label: 'Play or pause', group: 'Play', run: (store) => store.togglePlay() },
+  { id: 'frame-back', keys: [','], label: 'One frame back', group: 'Play', run: (store) => store.stepFrame(-1) },
+  { id: 'frame-on', keys: ['.'], label: 'One frame on', group: 'Play', run: (store) => store.stepFrame(1) },
+  { id: 'key-back', keys: ['<'], label: 'Previous key pose', group: 'Play', run: (store) => store.stepKey(-1) },
+  { id: 'key-on', keys: ['>'], label: 'Next key pose', group: 'Play', run: (store) => store.stepKey(1) },
+  { id: 'loop', keys: ['L'], label: 'Loop on or off', group: 'Play', run: (store) => store.toggleLoop() },
+  {
+    id: 'add',
+    keys: ['Enter'],
+    label: 'Keep the pose at the playhead as a key pose',
+    group: 'Key poses',
+    run: (store) => (store.state.draft.value ? store.keepDraft() : store.keepPoseHere()),
+  },
+  {
+    id: 'remove',
+    keys: ['Delete', 'Backspace', 'Shift+Enter'],
+    label: 'Delete the selected key poses',
+    group: 'Key poses',
+    run: (store) => store.deleteKeys(selectedOrHere(store)),
+  },
+  {
+    id: 'mirror',
+    keys: ['M'],
+    label: 'Mirror the pose',
+    group: 'Key poses',
+    run: (store) => (store.state.draft.value ? store.mirrorDraft() : store.mirrorKeys()),
+  },
+  {
+    id: 'select-all',
+    keys: ['Mod+A'],
+    label: 'Select all key poses',
+    group: 'Key poses',
+    run: (store) => store.selectAll(),
+  },
+  { id: 'undo', keys: ['Mod+Z'], label: 'Undo', group: 'Project', run: (store) => store.undo() },
+  { id: 'redo', keys: ['Mod+Shift+Z', 'Mod+Y'], label: 'Redo', group: 'Project', run: (store) => store.redo() },
+  {
+    id: 'generate',
+    keys: ['G'],
+    label: 'Generate the dance',
+    group: 'Project',
+    run: (store) => void store.generateForPage(),
+  },
+  { id: 'zoom-in', keys: ['+', '='], label: 'Zoom in', group: 'View', run: (store) => store.zoom(1.5) },
+  { id: 'zoom-out', keys: ['-'], label: 'Zoom out', group: 'View', run: (store) => store.zoom(1 / 1.5) },
+  { id: 'fit', keys: ['0'], label: 'Show the whole song', group: 'View', run: (store) => store.fit() },
+  { id: 'help', keys: ['?'], label: 'Show the keys', group: 'View', run: (store) => store.toggleHelp() },
+  {
+    id: 'escape',
+    keys: ['Escape'],
+    label: 'Cancel: drag, dialog, editor',
+    group: 'View',
+    everywhere: true,
+    run: (store) => {
+      if (store.state.help.value) store.toggleHelp(false);
+      else if (store.state.draft.value) store.closeDraft();
+      else store.selectKey(null);
+    },
+  },
+];
+
+const mac = typeof navigator !== 'undefined' && /Mac|iPhone|iPad/.test(navigator.platform);
+
+/** True when an event is one of a shortcut's keys. */
+export function matches(
+  event: Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'shiftKey' | 'altKey'>,
+  combo: string,
+): boolean {
+  const parts = combo.split('+').filter((part) => part !== '');
+  const wanted = combo.endsWith('+') ? '+' : parts[parts.length - 1];
+  const modifiers = combo.endsWith('+') ? parts : parts.slice(0, -1);
+  if (event.altKey) return false;
+  if ((event.ctrlKey || event.metaKey) !== modifiers.includes('Mod')) return false;
+  const key = event.key === ' ' ? 'Space' : event.key;
+  const named = wanted.length > 1 || /^[A-Z]$/.test(wanted);
+  if (!named) return key === wanted; // a printable sign: Shift is part of typing it
+  if (event.shiftKey !== modifiers.includes('Shift')) return false;
+  return key.toLowerCase() === wanted.toLowerCase();
+}
+
+/** The keys of a shortcut as people read them. */
+export function keyText(combo: string): string {
+  return combo
+    .replace('Mod+', mac ? '⌘' : 'Ctrl+')
+    .replace('Shift+', mac ? '⇧' : 'Shift+')
+    .replace('Escape', 'Esc');
+}
+
+/** A tooltip: what a control does and its key. */
+export function tip(id: string, text?: string): string {
+  const shortcut = SHORTCUTS.find((each) => each.id === id);
+  if (!shortcut) throw new Error(`No shortcut is called "${id}".`);
+  return `${text ?? shortcut.label} (${keyText(shortcut.keys[0])})`;
+}
+
+/** Binds the table to a page. Returns the way to stop that. */
+export function bindShortcuts(store: Store, target: Window): () => void {
+  const listener = (event: KeyboardEvent) => {
+    if (event.defaultPrevented) return;
+    const element = event.target as HTMLElement;
+    const typing = element.matches?.('input:not([type=range]):not([type=radio]), textarea, select, [contenteditable]');
+    // Space and Enter belong to a focused control; arrows are never in the table.
+    const pressing =
+      (event.key === ' ' || event.key === 'Enter') && element.matches?.('button, a, summary, input, [role=tab]');
+    for (const shortcut of SHORTCUTS) {
+      if ((typing || pressing) && !shortcut.everywhere) continue;
+      if (!shortcut.keys.some((combo) => matches(event, combo))) continue;
+      event.preventDefault();
+      shortcut.run(store);
+      return;
+    }
+  };
+  target.addEventListener('keydown', listener);
+  return () => target.removeEventListener('keydown', listener);
+}

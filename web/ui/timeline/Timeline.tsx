@@ -1,0 +1,80 @@
+import { useComputed, useSignalEffect } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import { useStore } from '../store-context';
+import { drawTimeline } from './draw';
+import { LANES_HEIGHT } from './geometry';
+import { bindGestures } from './gestures';
+import { KeyLane } from './KeyLane';
+import { LoopHandles } from './LoopHandles';
+import { Playhead } from './Playhead';
+import { ScrollBar } from './ScrollBar';
+import { surface } from './surface';
+
+/** The timeline: one canvas for what stands still, elements for what can be grabbed. */
+export function Timeline() {
+  const store = useStore();
+  const { state } = store;
+  const box = useRef<HTMLDivElement>(null);
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const frame = useRef(0);
+
+  useEffect(() => {
+    const element = box.current!;
+    surface.value = element;
+    const observer = new ResizeObserver(() => store.resizeView(element.clientWidth));
+    observer.observe(element);
+    const unbind = bindGestures(element, store);
+    return () => {
+      observer.disconnect();
+      unbind();
+      surface.value = null;
+    };
+  }, [store]);
+
+  useSignalEffect(() => {
+    // A view of zero scale asks to be set up: a new song has come.
+    if (state.view.value.pixelsPerSecond === 0 && state.viewWidth.value > 0 && state.duration.value > 0) {
+      store.resizeView(state.viewWidth.value);
+    }
+  });
+
+  const picture = useComputed(() => {
+    const partial = state.partial.value;
+    const dance = state.dance.value;
+    const generating = state.generation.value.status === 'running';
+    const done = dance && dance.kind !== 'preview' ? dance.motion.frames / dance.motion.fps : 0;
+    return {
+      view: state.view.value,
+      width: state.viewWidth.value,
+      duration: state.duration.value,
+      waveform: state.song.value?.waveform ?? null,
+      features: state.song.value?.features ?? null,
+      grid: state.grid.value,
+      loop: state.loop.value,
+      keys: state.document.value.keyPoses,
+      selection: state.selection.value,
+      danced: generating ? (partial ? partial.frames / partial.fps : 0) : done,
+      stale: state.stale.value,
+      generating,
+    };
+  });
+  useSignalEffect(() => {
+    const now = picture.value;
+    cancelAnimationFrame(frame.current);
+    frame.current = requestAnimationFrame(() => {
+      if (canvas.current) drawTimeline(canvas.current, now, Math.min(devicePixelRatio || 1, 2));
+    });
+  });
+
+  return (
+    <div class="timeline-body">
+      <div class="timeline-surface" ref={box} style={{ height: LANES_HEIGHT }}>
+        <canvas ref={canvas} class="timeline-canvas" style={{ height: LANES_HEIGHT }} aria-hidden="true" />
+        <KeyLane />
+        <LoopHandles />
+        <Playhead />
+      </div>
+      <ScrollBar />
+    </div>
+  );
+}

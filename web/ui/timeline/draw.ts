@@ -1,0 +1,200 @@
+/** Draws the still parts of the timeline on one canvas: ruler, waveform, beats, onsets, ranges. */
+import { lowerBound } from '../../app/snapping';
+import type { LoopRange } from '../../audio/player';
+import type { TimelineView } from '../../app/state';
+import type { BeatGrid, Features, KeyPose, Waveform } from '../../core/types';
+import { barStep, LANES, LANES_HEIGHT, timeToX, xToTime } from './geometry';
+
+/** What is drawn. */
+export interface Picture {
+  view: TimelineView;
+  width: number;
+  duration: number;
+  waveform: Waveform | null;
+  features: Features | null;
+  grid: BeatGrid | null;
+  loop: LoopRange | null;
+  keys: readonly KeyPose[];
+  selection: ReadonlySet<string>;
+  /** Seconds up to which the dance is made, and whether it is up to date. */
+  danced: number;
+  stale: boolean;
+  generating: boolean;
+}
+
+const COLOURS = {
+  lane: '#12171e',
+  laneAlt: '#151b23',
+  end: '#0d1015',
+  line: 'rgba(255,255,255,0.055)',
+  bar: 'rgba(255,255,255,0.16)',
+  text: '#9aa7b8',
+  music: '#4cc9f0',
+  musicDim: 'rgba(76,201,240,0.45)',
+  beat: 'rgba(76,201,240,0.16)',
+  downbeat: 'rgba(76,201,240,0.38)',
+  loop: 'rgba(76,201,240,0.16)',
+  key: 'rgba(255,180,84,0.7)',
+  keyChosen: '#ffd08f',
+  motion: '#a78bfa',
+  motionDim: 'rgba(167,139,250,0.35)',
+};
+/** Beats closer than this are not drawn, bars are thinned out instead. */
+const MIN_BEAT_PIXELS = 9;
+const MIN_BAR_PIXELS = 18;
+const MIN_NUMBER_PIXELS = 44;
+
+type Brush = CanvasRenderingContext2D;
+
+/** Draws everything; `ratio` is the device's pixels per CSS pixel. */
+export function drawTimeline(canvas: HTMLCanvasElement, picture: Picture, ratio: number): void {
+  const pixels = Math.round(picture.width * ratio);
+  if (canvas.width !== pixels) canvas.width = pixels;
+  if (canvas.height !== Math.round(LANES_HEIGHT * ratio)) canvas.height = Math.round(LANES_HEIGHT * ratio);
+  const brush = canvas.getContext('2d');
+  if (!brush || picture.view.pixelsPerSecond <= 0) return;
+  brush.setTransform(ratio, 0, 0, ratio, 0, 0);
+  drawLanes(brush, picture);
+  drawLoop(brush, picture);
+  drawBeats(brush, picture);
+  drawWaveform(brush, picture);
+  drawOnsets(brush, picture);
+  drawKeyStems(brush, picture);
+  drawDanced(brush, picture);
+}
+
+function drawLanes(brush: Brush, { width, view, duration }: Picture): void {
+  brush.clearRect(0, 0, width, LANES_HEIGHT);
+  const end = Math.min(width, timeToX(view, duration));
+  brush.fillStyle = COLOURS.laneAlt;
+  brush.fillRect(0, 0, end, LANES_HEIGHT);
+  brush.fillStyle = COLOURS.lane;
+  brush.fillRect(0, LANES.wave.top, end, LANES.wave.height + LANES.onset.height);
+  brush.fillStyle = COLOURS.line;
+  for (const lane of [LANES.wave, LANES.keys, LANES.range]) brush.fillRect(0, lane.top, end, 1);
+}
+
+function drawLoop(brush: Brush, { loop, view }: Picture): void {
+  if (!loop) return;
+  const x = timeToX(view, loop.start);
+  const width = timeToX(view, loop.end) - x;
+  brush.fillStyle = COLOURS.loop;
+  brush.fillRect(x, 0, width, LANES_HEIGHT);
+  brush.fillStyle = COLOURS.music;
+  brush.fillRect(x, LANES.ruler.height - 3, width, 3);
+}
+
+function drawBeats(brush: Brush, { grid, view, width, duration }: Picture): void {
+  if (!grid || grid.beats.length < 2) {
+    drawSeconds(brush, view, width, duration);
+    return;
+  }
+  const bottom = LANES.range.top;
+  const beatWidth = (60 / grid.tempo) * view.pixelsPerSecond;
+  if (beatWidth >= MIN_BEAT_PIXELS) {
+    brush.fillStyle = COLOURS.beat;
+    const last = lowerBound(grid.beats, xToTime(view, width));
+    for (let i = lowerBound(grid.beats, view.start); i < last; i += 1) {
+      brush.fillRect(Math.round(timeToX(view, grid.beats[i])), LANES.wave.top, 1, bottom - LANES.wave.top);
+    }
+  }
+  const barWidth = beatWidth * grid.beatsPerBar;
+  const lines = barStep(barWidth, MIN_BAR_PIXELS);
+  const numbers = barStep(barWidth, MIN_NUMBER_PIXELS);
+  brush.font = '11px system-ui, sans-serif';
+  brush.textBaseline = 'middle';
+  const from = Math.max(0, lowerBound(grid.downbeats, view.start - 60 / view.pixelsPerSecond));
+  const to = lowerBound(grid.downbeats, xToTime(view, width));
+  for (let bar = from; bar < to; bar += 1) {
+    if (bar % lines !== 0) continue;
+    const x = Math.round(timeToX(view, grid.downbeats[bar]));
+    brush.fillStyle = COLOURS.downbeat;
+    brush.fillRect(x, 12, 1, bottom - 12);
+    if (bar % numbers !== 0) continue;
+    brush.fillStyle = COLOURS.text;
+    brush.fillText(String(bar + 1), x + 5, 12);
+  }
+}
+
+/** Without beats (a song still on its way) the ruler shows seconds. */
+function drawSeconds(brush: Brush, view: TimelineView, width: number, duration: number): void {
+  const step = barStep(view.pixelsPerSecond, MIN_NUMBER_PIXELS);
+  brush.font = '11px system-ui, sans-serif';
+  brush.textBaseline = 'middle';
+  const end = Math.min(duration, xToTime(view, width));
+  for (let second = Math.floor(view.start / step) * step; second <= end; second += step) {
+    const x = Math.round(timeToX(view, second));
+    brush.fillStyle = COLOURS.bar;
+    brush.fillRect(x, 12, 1, 12);
+    brush.fillStyle = COLOURS.text;
+    brush.fillText(`${second} s`, x + 5, 12);
+  }
+}
+
+function drawWaveform(brush: Brush, { waveform, view, width, duration }: Picture): void {
+  const middle = LANES.wave.top + LANES.wave.height / 2;
+  const reach = LANES.wave.height / 2 - 4;
+  const end = Math.min(width, timeToX(view, duration));
+  brush.fillStyle = COLOURS.musicDim;
+  brush.fillRect(0, Math.round(middle), end, 1);
+  if (!waveform) return;
+  const { min, max, rate } = waveform;
+  brush.fillStyle = COLOURS.music;
+  const perPixel = rate / view.pixelsPerSecond;
+  for (let x = 0; x < end; x += 1) {
+    const first = Math.floor(view.start * rate + x * perPixel);
+    const last = Math.min(max.length, Math.max(first + 1, Math.floor(view.start * rate + (x + 1) * perPixel)));
+    if (first >= max.length) break;
+    let low = 0;
+    let high = 0;
+    for (let i = Math.max(0, first); i < last; i += 1) {
+      if (min[i] < low) low = min[i];
+      if (max[i] > high) high = max[i];
+    }
+    const top = middle - Math.min(1, high) * reach;
+    const bottom = middle - Math.max(-1, low) * reach;
+    if (bottom - top > 0.5) brush.fillRect(x, top, 1, bottom - top);
+  }
+}
+
+function drawOnsets(brush: Brush, { features, view, width }: Picture): void {
+  if (!features) return;
+  const columns = features.names.length;
+  const onset = features.names.indexOf('onset');
+  if (onset < 0) return;
+  const { top, height } = LANES.onset;
+  brush.fillStyle = COLOURS.musicDim;
+  const perPixel = features.fps / view.pixelsPerSecond;
+  const bar = Math.max(1, Math.floor(1 / perPixel) - 1);
+  const step = Math.max(1, Math.floor(1 / perPixel));
+  for (let x = 0; x < width; x += step) {
+    const first = Math.floor(view.start * features.fps + x * perPixel);
+    const last = Math.min(
+      features.frames,
+      Math.max(first + 1, Math.floor(view.start * features.fps + (x + 1) * perPixel)),
+    );
+    if (first >= features.frames) break;
+    let peak = 0;
+    for (let i = Math.max(0, first); i < last; i += 1) peak = Math.max(peak, features.data[i * columns + onset]);
+    const tall = peak * (height - 4);
+    if (tall > 0.5) brush.fillRect(x, top + height - 2 - tall, bar, tall);
+  }
+}
+
+function drawKeyStems(brush: Brush, { keys, view, width, selection }: Picture): void {
+  for (const key of keys) {
+    const x = Math.round(timeToX(view, key.time));
+    if (x < -1 || x > width) continue;
+    brush.fillStyle = selection.has(key.id) ? COLOURS.keyChosen : COLOURS.key;
+    brush.fillRect(x, LANES.wave.top, 1, LANES.keys.top - LANES.wave.top + 4);
+  }
+}
+
+function drawDanced(brush: Brush, { danced, stale, generating, view, width, duration }: Picture): void {
+  const { top, height } = LANES.range;
+  const end = Math.min(width, timeToX(view, Math.min(danced, duration)));
+  if (end <= 0) return;
+  brush.fillStyle = stale && !generating ? COLOURS.motionDim : COLOURS.motion;
+  const from = Math.max(0, timeToX(view, 0));
+  brush.fillRect(from, top + 2, end - from, height - 4);
+}
