@@ -103,6 +103,12 @@ export class History<T> {
     return true;
   }
 
+  /** Takes the last step back for good: something failed, and redo must not bring it again. */
+  abandon(): void {
+    const step = this.#past.pop();
+    if (step) this.#present = step.state;
+  }
+
   /** Forgets everything and starts at `initial`. */
   reset(initial: T): void {
     this.#past = [];

@@ -73,7 +73,7 @@ export function Icon({ name, size = 20 }: { name: IconName; size?: number }) {
     <span
       class="icon"
       aria-hidden="true"
-      style={{ width: size, height: size }}
+      style={{ width: `${size}px`, height: `${size}px` }}
       dangerouslySetInnerHTML={{ __html: ICONS[name] }}
     />
   );

@@ -178,7 +178,7 @@ export function songActions(context: Context, dance: DanceActions) {
   function rollBack(before: { song: Song | null; dance: Shelf['dance']; document: ProjectDocument }): void {
     if (before.song) show(before.song, before.dance);
     if (history.present !== before.document) {
-      if (history.undoLabel === 'New song') history.undo();
+      if (history.undoLabel === 'New song') history.abandon();
       if (history.present !== before.document) history.push(before.document, 'Back to the former song');
     }
     context.sync();

@@ -36,30 +36,29 @@ export function Library() {
           From dance
         </button>
       </div>
-      <label class="search">
-        <Icon name="search" size={16} />
-        <span class="visually-hidden">Search poses</span>
-        <input
-          type="search"
-          placeholder="Search poses"
-          value={query.value}
-          onInput={(event) => (query.value = event.currentTarget.value)}
-        />
-      </label>
-      <div class="groups" role="group" aria-label="Groups">
-        <button type="button" aria-pressed={group.value === null} onClick={() => (group.value = null)}>
-          All
-        </button>
-        {groups.value.map((name) => (
-          <button
-            key={name}
-            type="button"
-            aria-pressed={group.value === name}
-            onClick={() => (group.value = group.value === name ? null : name)}
-          >
-            {name}
-          </button>
-        ))}
+      <div class="find">
+        <label class="search">
+          <Icon name="search" size={16} />
+          <span class="visually-hidden">Search poses</span>
+          <input
+            type="search"
+            placeholder="Search"
+            value={query.value}
+            onInput={(event) => (query.value = event.currentTarget.value)}
+          />
+        </label>
+        <select
+          aria-label="Group"
+          value={group.value ?? ''}
+          onChange={(event) => (group.value = event.currentTarget.value || null)}
+        >
+          <option value="">All styles</option>
+          {groups.value.map((name) => (
+            <option key={name} value={name}>
+              {name}
+            </option>
+          ))}
+        </select>
       </div>
       {shown.value.length === 0 ? (
         <p class="empty">{poses.value.length === 0 ? 'The pose library is loading.' : 'No pose has that name.'}</p>

@@ -34,7 +34,7 @@ export function KeyLane() {
       role="list"
       aria-label={`Key poses, ${keys.length}`}
       ref={list}
-      style={{ top: LANES.keys.top, height: LANES.keys.height }}
+      style={{ top: `${LANES.keys.top}px`, height: `${LANES.keys.height}px` }}
     >
       {keys.length === 0 && landing === null && state.duration.value > 0 && (
         <p class="lane-hint">Drag a pose here, or choose one in the list: it lands on a beat.</p>
@@ -85,7 +85,7 @@ function KeyButton({ pose, x, compact }: { pose: KeyPose; x: number; compact: bo
         aria-pressed={chosen}
         aria-label={`${name}, ${where}`}
         title={`${name}, ${where}. Arrows move it, Enter edits it, Delete deletes it.`}
-        style={{ width }}
+        style={{ width: `${width}px` }}
         onPointerDown={(event) => beginKeyDrag(event, pose.id, store)}
         onDblClick={() => store.editKey(pose.id)}
         onKeyDown={onKeyDown}

@@ -68,8 +68,8 @@ export function Timeline() {
 
   return (
     <div class="timeline-body">
-      <div class="timeline-surface" ref={box} style={{ height: LANES_HEIGHT }}>
-        <canvas ref={canvas} class="timeline-canvas" style={{ height: LANES_HEIGHT }} aria-hidden="true" />
+      <div class="timeline-surface" ref={box} style={{ height: `${LANES_HEIGHT}px` }}>
+        <canvas ref={canvas} class="timeline-canvas" style={{ height: `${LANES_HEIGHT}px` }} aria-hidden="true" />
         <KeyLane />
         <LoopHandles />
         <Playhead />

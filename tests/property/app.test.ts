@@ -1,0 +1,109 @@
+import fc from 'fast-check';
+import { describe, expect, it } from 'vitest';
+import { axisAngleToEuler, eulerToAxisAngle } from '../../web/app/euler';
+import { readMotion, writeMotion } from '../../web/app/motion-file';
+import { angleBetween, axisAngleToQuaternion } from '../../web/core/rotation';
+import { createDocument, parseDocument } from '../../web/core/document';
+import { History } from '../../web/core/history';
+import { alignSigns, emptyMotion } from '../../web/core/motion';
+
+const angle = fc.double({ min: -3, max: 3, noNaN: true });
+
+describe('x y z degrees', () => {
+  it('say the same rotation as the axis-angle they came from', () => {
+    fc.assert(
+      fc.property(fc.tuple(angle, angle, angle), (turn) => {
+        const back = eulerToAxisAngle(axisAngleToEuler(turn));
+        expect(angleBetween(axisAngleToQuaternion(turn), axisAngleToQuaternion(back))).toBeLessThan(2e-3);
+      }),
+    );
+  });
+  it('come back as typed while y stays within 89 degrees', () => {
+    const degrees = (limit: number) => fc.double({ min: -limit, max: limit, noNaN: true });
+    fc.assert(
+      fc.property(fc.tuple(degrees(179), degrees(89), degrees(179)), (typed) => {
+        axisAngleToEuler(eulerToAxisAngle(typed)).forEach((value, i) => expect(value).toBeCloseTo(typed[i], 4));
+      }),
+    );
+  });
+});
+
+describe('dance files', () => {
+  it('keep rotations to 1e-4 and positions to half a millimetre', () => {
+    fc.assert(
+      fc.property(fc.array(fc.tuple(angle, angle, angle), { minLength: 1, maxLength: 12 }), (turns) => {
+        const motion = emptyMotion(turns.length);
+        turns.forEach((turn, t) => {
+          motion.quaternions.set(axisAngleToQuaternion(turn), t * 96 + 20);
+          motion.root.set(turn, t * 3);
+        });
+        alignSigns(motion);
+        const read = readMotion(writeMotion(motion));
+        expect(read.frames).toBe(motion.frames);
+        expect(read.fps).toBe(30);
+        motion.quaternions.forEach((value, i) => expect(Math.abs(read.quaternions[i] - value)).toBeLessThan(1e-4));
+        motion.root.forEach((value, i) => expect(Math.abs(read.root[i] - value)).toBeLessThanOrEqual(0.00051));
+      }),
+    );
+  });
+  it('are refused when they are something else', () => {
+    fc.assert(
+      fc.property(fc.uint8Array({ maxLength: 300 }), (bytes) => {
+        expect(() => readMotion(bytes.slice().buffer)).toThrow(/dance file/);
+      }),
+    );
+  });
+});
+
+describe('parseDocument', () => {
+  it('never throws anything but a clear Error, whatever it gets', () => {
+    fc.assert(
+      fc.property(fc.jsonValue(), fc.jsonValue(), fc.jsonValue(), (keyPoses, dials, song) => {
+        const { document } = parseDocument({ format: 'posebeat', version: 1, keyPoses, dials, song });
+        expect(parseDocument(JSON.parse(JSON.stringify(document)))).toEqual({ document, repairs: [] });
+      }),
+    );
+    fc.assert(
+      fc.property(fc.jsonValue(), (anything) => {
+        expect(() => parseDocument(anything)).toThrow(/Posebeat project/);
+      }),
+    );
+  });
+  it('has nothing to repair in a new document', () => {
+    expect(parseDocument(createDocument()).repairs).toEqual([]);
+  });
+});
+
+describe('History', () => {
+  it('after any actions, undoing everything gives the first state and redoing the last', () => {
+    const action = fc.oneof(
+      fc.record({ type: fc.constant('push' as const), value: fc.integer() }),
+      fc.record({ type: fc.constant('drag' as const), value: fc.integer(), keep: fc.boolean() }),
+      fc.record({ type: fc.constant('undo' as const) }),
+      fc.record({ type: fc.constant('redo' as const) }),
+    );
+    fc.assert(
+      fc.property(fc.array(action, { maxLength: 60 }), (actions) => {
+        const history = new History({ value: 0 });
+        const first = history.present;
+        for (const each of actions) {
+          if (each.type === 'push') history.push({ value: each.value }, 'push');
+          else if (each.type === 'undo') history.undo();
+          else if (each.type === 'redo') history.redo();
+          else {
+            history.capture();
+            history.preview({ value: each.value });
+            if (each.keep) history.commit('drag');
+            else history.discard();
+          }
+        }
+        while (history.redo());
+        const last = history.present;
+        while (history.undo());
+        expect(history.present).toBe(first);
+        while (history.redo());
+        expect(history.present).toBe(last);
+      }),
+    );
+  });
+});
