@@ -126,7 +126,7 @@ def salsa_basic() -> Choreography:
         (4, dict(h=0.925, w=0.42, roll=-11, side=-12, twist=32, turn=8, tilt=-2, bend=-3, look=0, la=Arm((-0.04, -0.08, 0.4), elbow=FRONT, roll=10), ra=Arm((0.24, -0.34, -0.14), elbow=BACK, roll=10))),
         (5, dict(h=0.945, w=0.76, roll=11, side=17, twist=-19, turn=0, tilt=2, look=4, head_tilt=3, la=Arm((0.26, -0.3, -0.1), elbow=BACK, roll=10), ra=Arm((0.0, -0.1, 0.4), elbow=FRONT, roll=10))),
         (6, dict(h=0.95, w=0.26, roll=-12, side=-19, twist=19, turn=-12, tilt=1, look=-10, head_tilt=-4, la=Arm((0.42, 0.02, 0.18), elbow=OUT, roll=25), ra=frame_r)),
-        (7, dict(h=0.955, w=0.14, roll=5, side=7, twist=-13, turn=-4, look=-14, head_tilt=2, la=Arm((-0.05, 0.22, 0.2), elbow=(1, 0.1, 0.1), roll=0, flex=14), ra=Arm((0.2, -0.2, 0.24), elbow=BENT, roll=20))),
+        (7, dict(h=0.955, w=0.14, roll=5, side=7, twist=-13, turn=-4, look=-14, head_tilt=2, la=Arm((-0.02, 0.42, 0.1), elbow=(1, 0.1, 0.1), roll=0, flex=14), ra=Arm((0.2, -0.2, 0.24), elbow=BENT, roll=20))),
         (7.5, dict(roll=-7, w=0.12)),
     ]  # fmt: skip
     return Choreography("salsa-basic", "Salsa basic", "Forward and back with Cuban hips.", 8, left, keys, right=right, mirrored=False, bounce=0.02, nod=2)
@@ -179,7 +179,7 @@ def hip_hop_rock() -> Choreography:
 def kick_step() -> Choreography:
     # charleston family: step, kick, step back, touch
     left = [Stand(0, 2.5, 0.08, 0.1, 10, heel=(10, 0, 24)), Stand(3, 4.35, 0.09, -0.24, 14, heel=(30, 26, 40)),
-            Stand(6, 7.5, 0.08, -0.12, 14, heel=(24, 0, 30), arc=0.3, kick=(0.02, 0.1, 0.92))]  # fmt: skip
+            Stand(6, 7.5, 0.08, -0.12, 14, heel=(24, 0, 30), arc=0.34, kick=(0.02, 0.14, 1.15))]  # fmt: skip
     keys = [
         (0, dict(h=0.925, w=0.78, roll=5, side=4, twist=18, turn=-4, tilt=6, bend=6, look=0, la=Arm((0.14, -0.38, -0.3), elbow=BACK), ra=Arm((-0.06, -0.04, 0.4), elbow=FRONT))),
         (1, dict(h=0.925, w=0.98, roll=-6, side=-4, twist=-22, turn=2, tilt=-4, bend=6, look=4, la=Arm((0.02, 0.02, 0.44), elbow=FRONT), ra=Arm((0.28, -0.28, -0.3), elbow=BACK))),
