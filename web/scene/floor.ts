@@ -11,7 +11,7 @@ import {
 import { jointIndex } from '../core/skeleton';
 
 /** Background of the stage: what the floor fades into. */
-export const STAGE_COLOURS = { top: new Color('#0a0c12'), horizon: new Color('#171c28'), floor: new Color('#2b3344') };
+export const STAGE_COLOURS = { top: new Color('#0a0c11'), horizon: new Color('#171a21'), floor: new Color('#45474c') };
 
 /** Balls that darken the floor below them: [joint, radius in metres]. */
 const BLOCKERS: [number, number][] = (
@@ -139,9 +139,9 @@ for (int i = 0; i < ${BLOCKERS.length}; i++) {
   float l2 = max(dot(d, d), blockers[i].w * blockers[i].w);
   open *= 1.0 - 0.9 * clamp(max(d.y, 0.0) * blockers[i].w * blockers[i].w / (l2 * sqrt(l2)), 0.0, 1.0);
 }
-outgoingLight *= mix(0.34, 1.0, exp(-away * away * 0.16)) * mix(0.25, 1.0, open);
-float lines = 0.55 * gridLine(vFloor.xz, 1.0, 0.006) + 0.22 * gridLine(vFloor.xz, 0.25, 0.003);
-outgoingLight += vec3(0.10, 0.13, 0.19) * lines * exp(-away * away * 0.11) * open;
+outgoingLight *= mix(0.3, 1.0, exp(-away * away * 0.3)) * mix(0.25, 1.0, open);
+float lines = 0.5 * gridLine(vFloor.xz, 1.0, 0.005);
+outgoingLight += vec3(0.11, 0.125, 0.16) * lines * exp(-away * away * 0.11) * open;
 float ring = exp(-pow((away - 0.55 - 0.75 * (1.0 - glow)) * 5.0, 2.0)) + 0.5 * exp(-away * away * 1.4);
 outgoingLight += vec3(0.16, 0.14, 0.34) * ring * glow * glow;
 diffuseColor.a = 1.0 - smoothstep(2.6, 8.6, away);`;

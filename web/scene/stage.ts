@@ -7,7 +7,7 @@ import { loadFigure } from './figure-asset';
 import { createBackdrop, Floor } from './floor';
 import { FollowCamera } from './follow-camera';
 import { ResolutionGovernor } from './framing';
-import { createSurroundings, Lights } from './lights';
+import { Lights } from './lights';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
 import { REST_HEIGHT } from './rest';
@@ -98,8 +98,6 @@ class WebGLStage implements Stage {
       orbit: (on) => (this.view.controls.enabled = on),
     });
     this.scene.add(this.backdrop, this.floor.mesh, this.lights.group);
-    this.scene.environment = createSurroundings(this.renderer);
-    this.scene.environmentIntensity = 0.55;
     this.canvas.addEventListener('dblclick', () => this.mode === 'dance' && this.frameFigure());
     this.canvas.addEventListener('webglcontextrestored', () => (this.dirty = true));
     this.watch();
@@ -188,7 +186,6 @@ class WebGLStage implements Stage {
     this.figure?.dispose();
     this.floor.dispose();
     this.lights.dispose();
-    this.scene.environment?.dispose();
     this.backdrop.geometry.dispose();
     this.renderer.dispose();
     this.canvas.remove();

@@ -4,7 +4,7 @@ import { poseToQuaternions } from '../core/rotation';
 import { CAPSULES, placePoint, standingRoot } from './body-points';
 import { Figure } from './figure';
 import { loadFigure } from './figure-asset';
-import { createSurroundings, Lights } from './lights';
+import { Lights } from './lights';
 import { headingOf } from './heading';
 
 /** Draws poses as pictures. */
@@ -95,8 +95,6 @@ class Studio {
     private readonly figure: Figure,
   ) {
     this.scene.add(figure.mesh, this.lights.group);
-    this.scene.environment = createSurroundings(renderer);
-    this.scene.environmentIntensity = 0.8;
   }
 
   static async open(): Promise<Studio> {
@@ -123,7 +121,6 @@ class Studio {
 
   dispose(): void {
     this.figure.dispose();
-    this.scene.environment?.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
   }

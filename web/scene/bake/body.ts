@@ -37,26 +37,25 @@ function torso(): Shape {
     top,
     [1, 0, 0],
     [
-      { t: 0.0, u: 0.128, v: 0.092, dv: 0.004 },
-      { t: 0.11, u: 0.15, v: 0.104, dv: 0.006 },
-      { t: 0.24, u: 0.142, v: 0.096, dv: 0.002 },
-      { t: 0.4, u: 0.117, v: 0.08, dv: -0.002 },
-      { t: 0.47, u: 0.114, v: 0.079, dv: -0.003 },
-      { t: 0.6, u: 0.126, v: 0.088, dv: -0.002 },
-      { t: 0.75, u: 0.142, v: 0.099, dv: 0.003 },
-      { t: 0.87, u: 0.143, v: 0.094, dv: 0.012 },
-      { t: 0.95, u: 0.115, v: 0.076, dv: 0.022 },
-      { t: 1.0, u: 0.07, v: 0.06, dv: 0.026 },
+      { t: 0.0, u: 0.112, v: 0.086, dv: 0.004 },
+      { t: 0.13, u: 0.138, v: 0.1, dv: 0.006 },
+      { t: 0.26, u: 0.137, v: 0.095, dv: 0.003 },
+      { t: 0.43, u: 0.115, v: 0.08, dv: -0.003 },
+      { t: 0.6, u: 0.122, v: 0.088, dv: -0.004 },
+      { t: 0.76, u: 0.138, v: 0.1, dv: 0.0 },
+      { t: 0.88, u: 0.136, v: 0.093, dv: 0.01 },
+      { t: 1.0, u: 0.075, v: 0.06, dv: 0.026 },
     ],
     [0.06, 0.04],
-    2.25,
+    2.3,
   );
-  const chest = both(ellipsoid([0.064, 1.325, 0.058], [0.07, 0.056, 0.036]), 0.05);
-  const seat = both(ellipsoid([0.066, hip[1] + 0.02, -0.06], [0.074, 0.082, 0.062]), 0.035);
-  const trapezius = both(limb([0.02, 1.495, -0.045], [0.165, 1.437, -0.052], 0.042, 0.036), 0.04);
-  const side = both(limb([0.115, 1.25, -0.03], [0.165, 1.385, -0.052], 0.03, 0.03), 0.02);
-  const throat = limb([0, 1.43, -0.035], add(neck, [0, 0.035, 0.012]), 0.06, 0.05);
-  return blend(0.045, trunk, chest, seat, trapezius, side, throat);
+  const chest = both(ellipsoid([0.06, 1.345, 0.046], [0.08, 0.075, 0.034]), 0.07);
+  const fold = both(limb([0.08, 1.33, 0.03], [0.19, 1.405, -0.03], 0.036, 0.034), 0.03);
+  const seat = both(ellipsoid([0.064, hip[1] + 0.022, -0.056], [0.074, 0.084, 0.06]), 0.035);
+  const trapezius = both(limb([0.018, 1.497, -0.042], [0.172, 1.438, -0.05], 0.036, 0.03), 0.04);
+  const side = both(limb([0.11, 1.23, -0.03], [0.178, 1.392, -0.055], 0.028, 0.032), 0.02);
+  const throat = limb([0, 1.43, -0.035], add(neck, [0, 0.035, 0.012]), 0.058, 0.05);
+  return blend(0.045, trunk, chest, seat, blend(0.03, trapezius, side, fold), throat);
 }
 
 function arm(): Shape {
@@ -65,31 +64,30 @@ function arm(): Shape {
     elbow,
     [0, 1, 0],
     [
-      { t: -0.08, u: 0.05, v: 0.052 },
-      { t: 0.1, u: 0.053, v: 0.054 },
-      { t: 0.32, u: 0.046, v: 0.047 },
-      { t: 0.58, u: 0.041, v: 0.044 },
-      { t: 0.86, u: 0.035, v: 0.037 },
-      { t: 1.0, u: 0.034, v: 0.036 },
+      { t: -0.06, u: 0.044, v: 0.046 },
+      { t: 0.12, u: 0.0465, v: 0.05 },
+      { t: 0.3, u: 0.0455, v: 0.048 },
+      { t: 0.58, u: 0.04, v: 0.043 },
+      { t: 0.85, u: 0.0345, v: 0.0365 },
+      { t: 1.0, u: 0.033, v: 0.0355 },
     ],
-    [0.05, 0.03],
+    [0.05, 0.02],
   );
   const lower = loft(
     elbow,
     wrist,
     [0, 1, 0],
     [
-      { t: -0.04, u: 0.033, v: 0.036 },
-      { t: 0.14, u: 0.037, v: 0.041 },
-      { t: 0.3, u: 0.036, v: 0.041 },
-      { t: 0.6, u: 0.029, v: 0.034 },
-      { t: 0.88, u: 0.022, v: 0.028 },
+      { t: 0.0, u: 0.033, v: 0.0355 },
+      { t: 0.16, u: 0.0365, v: 0.04 },
+      { t: 0.32, u: 0.0355, v: 0.0405 },
+      { t: 0.6, u: 0.0285, v: 0.034 },
+      { t: 0.85, u: 0.022, v: 0.0285 },
       { t: 1.0, u: 0.021, v: 0.028 },
     ],
-    [0.03, 0.02],
+    [0.02, 0.02],
   );
-  const deltoid = ellipsoid(add(shoulder, [0.002, 0.004, 0.002]), [0.066, 0.056, 0.058]);
-  return blend(0.03, blend(0.015, upper, lower), deltoid);
+  return blend(0.008, upper, lower);
 }
 
 function leg(): Shape {
@@ -99,32 +97,32 @@ function leg(): Shape {
     knee,
     [1, 0, 0],
     [
-      { t: -0.06, u: 0.082, v: 0.088 },
-      { t: 0.1, u: 0.08, v: 0.086, dv: 0.003 },
+      { t: -0.06, u: 0.08, v: 0.086 },
+      { t: 0.1, u: 0.079, v: 0.085, dv: 0.003 },
       { t: 0.35, u: 0.07, v: 0.078, dv: 0.008 },
       { t: 0.65, u: 0.056, v: 0.064, dv: 0.006 },
-      { t: 0.88, u: 0.047, v: 0.053, dv: 0.002 },
-      { t: 1.02, u: 0.045, v: 0.05 },
+      { t: 0.88, u: 0.0465, v: 0.053, dv: 0.003 },
+      { t: 1.0, u: 0.0435, v: 0.049, dv: 0.001 },
     ],
-    [0.05, 0.04],
+    [0.13, 0.03],
   );
   const shin = loft(
     knee,
     ankle,
     [1, 0, 0],
     [
-      { t: -0.04, u: 0.044, v: 0.049 },
-      { t: 0.09, u: 0.043, v: 0.048, dv: -0.004 },
-      { t: 0.27, u: 0.047, v: 0.053, dv: -0.013 },
-      { t: 0.45, u: 0.042, v: 0.047, dv: -0.011 },
-      { t: 0.7, u: 0.031, v: 0.035, dv: -0.005 },
-      { t: 0.9, u: 0.027, v: 0.032 },
-      { t: 1.0, u: 0.028, v: 0.033 },
+      { t: 0.0, u: 0.043, v: 0.0485, dv: 0.001 },
+      { t: 0.12, u: 0.043, v: 0.049, dv: -0.006 },
+      { t: 0.28, u: 0.0475, v: 0.054, dv: -0.014 },
+      { t: 0.48, u: 0.042, v: 0.0475, dv: -0.012 },
+      { t: 0.72, u: 0.0305, v: 0.035, dv: -0.006 },
+      { t: 0.9, u: 0.0265, v: 0.0315, dv: -0.001 },
+      { t: 1.0, u: 0.027, v: 0.0325 },
     ],
-    [0.04, 0.03],
+    [0.03, 0.03],
   );
-  const cap = ellipsoid(add(knee, [0, 0.006, 0.034]), [0.026, 0.034, 0.017]);
-  return blend(0.025, blend(0.02, thigh, shin), cap);
+  const cap = ellipsoid(add(knee, [0, 0.004, 0.031]), [0.024, 0.034, 0.017]);
+  return blend(0.03, blend(0.006, thigh, shin), cap);
 }
 
 function glove(): Shape {
@@ -138,9 +136,9 @@ function glove(): Shape {
     hand,
     [0, 1, 0],
     [
-      { t: -0.75, u: 0.0265, v: 0.033 },
-      { t: -0.3, u: 0.0235, v: 0.0305 },
-      { t: 0.0, u: 0.022, v: 0.031 },
+      { t: -0.75, u: 0.0246, v: 0.031 },
+      { t: -0.3, u: 0.0228, v: 0.0296 },
+      { t: 0.0, u: 0.0214, v: 0.0302 },
       { t: 0.45, u: 0.019, v: 0.037 },
       { t: 0.85, u: 0.016, v: 0.041 },
       { t: 1.05, u: 0.013, v: 0.039 },
@@ -192,7 +190,17 @@ function shoe(): Shape {
     [0.03, 0.026],
     2.3,
   );
-  const cuff = limb(add(ankle, [0, 0.07, 0]), add(ankle, [0, -0.03, -0.004]), 0.037, 0.039);
+  const cuff = loft(
+    add(ankle, [0, 0.07, 0.004]),
+    add(ankle, [0, -0.03, -0.002]),
+    [1, 0, 0],
+    [
+      { t: 0, u: 0.0285, v: 0.0335 },
+      { t: 0.5, u: 0.0305, v: 0.036 },
+      { t: 1, u: 0.033, v: 0.04 },
+    ],
+    [0.02, 0.02],
+  );
   const tilt: Vector = [0, 1, -0.22];
   return common(
     0.007,
@@ -203,33 +211,31 @@ function shoe(): Shape {
 
 function skull(): Shape {
   const at = (y: number, z: number): Vector => [0, head[1] + y, head[2] + z];
-  const cranium = ellipsoid(at(0.1, -0.008), [0.0745, 0.09, 0.093]);
-  const face = ellipsoid(at(0.052, 0.026), [0.059, 0.082, 0.066]);
-  const chin = ellipsoid(at(-0.012, 0.066), [0.025, 0.02, 0.02]);
-  const cheeks = both(ellipsoid([0.036, head[1] + 0.045, head[2] + 0.058], [0.024, 0.026, 0.022]), 0.02);
-  const brow = ellipsoid(at(0.108, 0.074), [0.046, 0.014, 0.014]);
-  const nose = limb(at(0.09, 0.087), at(0.05, 0.103), 0.0065, 0.0105);
-  const lips = ellipsoid(at(0.016, 0.084), [0.018, 0.01, 0.009]);
-  const ears = both(ellipsoid([0.0745, head[1] + 0.07, head[2] - 0.016], [0.009, 0.026, 0.017]), 0.01);
-  const bone = blend(0.035, cranium, face, chin, cheeks);
-  return blend(0.008, blend(0.016, bone, brow, nose, lips), ears);
+  const cranium = ellipsoid(at(0.1, -0.008), [0.0745, 0.089, 0.093]);
+  const face = ellipsoid(at(0.055, 0.026), [0.059, 0.083, 0.067]);
+  const chin = ellipsoid(at(-0.008, 0.062), [0.027, 0.021, 0.022]);
+  return blend(0.04, cranium, face, chin);
 }
 
 function headShape(): Shape {
-  const column = limb(add(neck, [0, -0.03, -0.002]), add(head, [0, 0.02, -0.012]), 0.046, 0.0475);
-  return blend(0.03, skull(), column);
+  const column = limb(add(neck, [0, -0.03, -0.002]), add(head, [0, 0.02, -0.012]), 0.044, 0.046);
+  // Round pods on the ears.
+  const ears = both(ellipsoid([0.0715, head[1] + 0.074, head[2] - 0.012], [0.0125, 0.03, 0.03]), 0.01);
+  return blend(0.005, blend(0.028, skull(), column), ears);
 }
 
+/** A face shield: broad over the eyes, narrow at the chin, with a ridge down the middle that gives the face its profile. */
 function visor(): Shape {
-  const centre = head[1] + 0.083;
-  const front: Shape = (_x, _y, z) => head[2] + 0.012 - z;
-  const band: Shape = (x, y) => {
-    const taper = 0.0255 - 0.012 * (x / 0.075) ** 2;
-    // The lower edge arches over the nose.
-    const arch = 0.011 * Math.exp(-((x / 0.017) ** 2));
-    return Math.max(y - centre - taper - 0.002, centre - taper + arch - y);
+  const middle = head[1] + 0.06;
+  const ridge = limb([0, head[1] + 0.098, head[2] + 0.07], [0, head[1] + 0.04, head[2] + 0.088], 0.01, 0.012);
+  const plate = blend(0.03, grow(skull(), 0.003), ridge);
+  const outline: Shape = (x, y) => {
+    const v = (y - middle) / 0.066;
+    const half = 0.0665 - 0.0155 * Math.max(0, 0.5 - 0.5 * v) ** 1.5 - 0.004 * v;
+    return ((Math.abs(x / half) ** 2.6 + Math.abs(v) ** 3.2) ** (1 / 2.8) - 1) * 0.05;
   };
-  return common(0.006, grow(skull(), 0.0035), front, band);
+  const front: Shape = (_x, _y, z) => head[2] + 0.0 - z;
+  return common(0.005, plate, outline, front);
 }
 
 const suit = (): Shape => {
@@ -239,7 +245,7 @@ const suit = (): Shape => {
   const cutWrist: Shape = (x) => Math.abs(x) - (wrist[0] - 0.02);
   const cutAnkle: Shape = (_x, y) => ankle[1] + 0.005 - y;
   const collar = below(add(neck, [0, 0.022, 0]), [0, 1, -0.35]);
-  return common(0.005, blend(0.045, torso(), arms, legs), cutWrist, cutAnkle, collar);
+  return common(0.005, blend(0.035, torso(), arms, legs), cutWrist, cutAnkle, collar);
 };
 
 /** Every part of the figure. */
@@ -247,7 +253,7 @@ export function figureParts(): Part[] {
   return [
     { name: 'body', shape: suit(), low: [0, 0.05, -0.2], high: [0.73, 1.56, 0.16], cell: 0.012, symmetric: true },
     { name: 'head', shape: headShape(), low: [0, 1.4, -0.14], high: [0.12, 1.8, 0.17], cell: 0.0072, symmetric: true },
-    { name: 'visor', shape: visor(), low: [0, 1.58, 0], high: [0.12, 1.72, 0.17], cell: 0.0043, symmetric: true },
+    { name: 'visor', shape: visor(), low: [0, 1.53, 0], high: [0.12, 1.74, 0.17], cell: 0.0043, symmetric: true },
     {
       name: 'glove',
       shape: glove(),

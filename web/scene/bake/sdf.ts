@@ -81,7 +81,7 @@ export function limb(a: Vector, b: Vector, ra: number, rb: number): Shape {
 /**
  * A tube with changing elliptic sections, closed by half ellipsoids.
  * @param side direction of the sections' u axis; made perpendicular to the tube
- * @param rings sections in ascending t; between them the sizes follow a smooth monotone curve
+ * @param rings sections in ascending t; between them the sizes follow a cubic spline
  * @param caps length of the two rounded ends, metres
  * @param power 2 for ellipses, larger for boxier sections
  */
@@ -95,7 +95,7 @@ export function loft(from: Vector, to: Vector, side: Vector, rings: Ring[], caps
   const v = [w[1] * u[2] - w[2] * u[1], w[2] * u[0] - w[0] * u[2], w[0] * u[1] - w[1] * u[0]];
   const [first, last] = [rings[0].t, rings[rings.length - 1].t];
   const curves = [(r: Ring) => r.u, (r: Ring) => r.v, (r: Ring) => r.du ?? 0, (r: Ring) => r.dv ?? 0].map((value) =>
-    monotoneCurve(
+    smoothCurve(
       rings.map((r) => r.t),
       rings.map(value),
     ),
@@ -120,27 +120,24 @@ export function loft(from: Vector, to: Vector, side: Vector, rings: Ring[], caps
   };
 }
 
-/** Monotone cubic through (xs, ys) (Fritsch and Carlson 1980): no overshoot, so a limb never bulges between two sections. */
-function monotoneCurve(xs: number[], ys: number[]): (x: number) => number {
+/** Natural cubic spline through (xs, ys): continuous curvature, so highlights run along a limb without a kink. */
+function smoothCurve(xs: number[], ys: number[]): (x: number) => number {
   const n = xs.length;
-  const slopes = xs.slice(1).map((x, i) => (ys[i + 1] - ys[i]) / (x - xs[i]));
-  const tangents = xs.map((_, i) => {
-    if (i === 0) return slopes[0];
-    if (i === n - 1) return slopes[n - 2];
-    const [a, b] = [slopes[i - 1], slopes[i]];
-    return a * b <= 0 ? 0 : (2 * a * b) / (a + b);
-  });
+  const h = xs.slice(1).map((x, i) => x - xs[i]);
+  const second = new Array<number>(n).fill(0);
+  const diagonal = new Array<number>(n).fill(1);
+  // Thomas algorithm for the inner knots' second derivatives; the end knots' are zero.
+  for (let i = 1; i < n - 1; i++) {
+    const right = 6 * ((ys[i + 1] - ys[i]) / h[i] - (ys[i] - ys[i - 1]) / h[i - 1]);
+    const below = i > 1 ? h[i - 1] / diagonal[i - 1] : 0;
+    diagonal[i] = 2 * (h[i - 1] + h[i]) - below * (i > 1 ? h[i - 1] : 0);
+    second[i] = right - below * second[i - 1];
+  }
+  for (let i = n - 2; i > 0; i--) second[i] = (second[i] - h[i] * second[i + 1]) / diagonal[i];
   return (x) => {
     let i = 0;
     while (i < n - 2 && x > xs[i + 1]) i++;
-    const h = xs[i + 1] - xs[i];
-    const t = (x - xs[i]) / h;
-    const [t2, t3] = [t * t, t * t * t];
-    return (
-      (2 * t3 - 3 * t2 + 1) * ys[i] +
-      (t3 - 2 * t2 + t) * h * tangents[i] +
-      (3 * t2 - 2 * t3) * ys[i + 1] +
-      (t3 - t2) * h * tangents[i + 1]
-    );
+    const [a, b] = [(xs[i + 1] - x) / h[i], (x - xs[i]) / h[i]];
+    return a * ys[i] + b * ys[i + 1] + (((a ** 3 - a) * second[i] + (b ** 3 - b) * second[i + 1]) * h[i] ** 2) / 6;
   };
 }

@@ -21,11 +21,11 @@ type Chain = readonly (readonly [bone: number, position: number])[];
 
 /** Bone -1 stands for "the trunk, whichever of its bones is here". */
 const ARM: Chain = [
-  [-1, 0.05],
-  [skinBone('left_collar'), shoulderX - 0.07],
-  [skinBone('left_shoulder1'), shoulderX - 0.022],
-  [skinBone('left_shoulder2'), shoulderX + 0.02],
-  [skinBone('left_upper1'), shoulderX + 0.062],
+  [-1, 0.045],
+  [skinBone('left_collar'), shoulderX - 0.04],
+  [skinBone('left_shoulder1'), shoulderX + 0.004],
+  [skinBone('left_shoulder2'), shoulderX + 0.038],
+  [skinBone('left_upper1'), shoulderX + 0.076],
   [skinBone('left_upper2'), shoulderX + 0.135],
   [skinBone('left_upper3'), elbowX - 0.05],
   [skinBone('left_elbow1'), elbowX - 0.014],
