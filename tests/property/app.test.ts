@@ -1,11 +1,9 @@
 import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
 import { axisAngleToEuler, eulerToAxisAngle } from '../../web/app/euler';
-import { readMotion, writeMotion } from '../../web/app/motion-file';
 import { angleBetween, axisAngleToQuaternion } from '../../web/core/rotation';
 import { createDocument, parseDocument } from '../../web/core/document';
 import { History } from '../../web/core/history';
-import { alignSigns, emptyMotion } from '../../web/core/motion';
 
 const angle = fc.double({ min: -3, max: 3, noNaN: true });
 
@@ -23,33 +21,6 @@ describe('x y z degrees', () => {
     fc.assert(
       fc.property(fc.tuple(degrees(179), degrees(89), degrees(179)), (typed) => {
         axisAngleToEuler(eulerToAxisAngle(typed)).forEach((value, i) => expect(value).toBeCloseTo(typed[i], 4));
-      }),
-    );
-  });
-});
-
-describe('dance files', () => {
-  it('keep rotations to 1e-4 and positions to half a millimetre', () => {
-    fc.assert(
-      fc.property(fc.array(fc.tuple(angle, angle, angle), { minLength: 1, maxLength: 12 }), (turns) => {
-        const motion = emptyMotion(turns.length);
-        turns.forEach((turn, t) => {
-          motion.quaternions.set(axisAngleToQuaternion(turn), t * 96 + 20);
-          motion.root.set(turn, t * 3);
-        });
-        alignSigns(motion);
-        const read = readMotion(writeMotion(motion));
-        expect(read.frames).toBe(motion.frames);
-        expect(read.fps).toBe(30);
-        motion.quaternions.forEach((value, i) => expect(Math.abs(read.quaternions[i] - value)).toBeLessThan(1e-4));
-        motion.root.forEach((value, i) => expect(Math.abs(read.root[i] - value)).toBeLessThanOrEqual(0.00051));
-      }),
-    );
-  });
-  it('are refused when they are something else', () => {
-    fc.assert(
-      fc.property(fc.uint8Array({ maxLength: 300 }), (bytes) => {
-        expect(() => readMotion(bytes.slice().buffer)).toThrow(/dance file/);
       }),
     );
   });

@@ -1,7 +1,7 @@
 /** Files that come with the page, addressed relative to it so that any sub-path works. */
 import * as v from 'valibot';
 import { parseDocument } from '../core/document';
-import { readMotion } from './motion-file';
+import { decodeMotion } from '../core/formats/motion-binary';
 import type { LibraryPose, SeedClip } from '../core/types';
 import type { Assets } from './ports';
 
@@ -35,10 +35,10 @@ export function createAssets(base: string): Assets {
     poses: async (): Promise<LibraryPose[]> => v.parse(posesSchema, await json('library/poses.json')).poses,
     seeds: async (): Promise<SeedClip[]> => v.parse(clipsSchema, await json('library/seeds.json')).clips,
     async demo() {
-      const [raw, motion] = await Promise.all([json('demo/demo.json'), get('demo/motion.bin')]);
+      const [raw, motion] = await Promise.all([json('demo/demo.json'), get('demo/dance.bin')]);
       return {
         document: parseDocument(raw).document,
-        motion: readMotion(await motion.arrayBuffer()),
+        motion: decodeMotion(await motion.arrayBuffer()),
         songUrl: new URL('demo/song.mp3', base).href,
       };
     },
