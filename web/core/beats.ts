@@ -1,15 +1,16 @@
 /** Tempo and beats from an onset envelope: local autocorrelation for the tempo, dynamic programming for the beats (Ellis 2007). */
 
+import { logTempoPrior } from './beats-level';
+
 /** Slowest and fastest beat that is looked for, beats per minute. */
 export const TEMPO_RANGE = [50, 220] as const;
-/** Centre and width in octaves of the log-normal tempo prior (Ellis 2007, eq. 7, with a wider curve). */
-const PRIOR_CENTRE = 118;
-const PRIOR_OCTAVES = 0.8;
 /** Tempo candidates per octave: 1.5 % steps, fine against the tolerance of the beat search. */
 const STEPS_PER_OCTAVE = 48;
 /** Window and step of the local autocorrelation, seconds. */
-const WINDOW_SECONDS = 10;
-const STEP_SECONDS = 1;
+const WINDOW_SECONDS = 12;
+const STEP_SECONDS = 2;
+/** Weight of repetition after a bar against repetition after a beat. */
+const BAR_WEIGHT = 1.5;
 /** Cost of a tempo change by one octave between windows, in units of the tempo score. */
 const CHANGE_COST = 3;
 /** Weight of even spacing against strong onsets in the beat search (Ellis 2007, alpha). */
@@ -88,22 +89,33 @@ export function tempoCandidates(): Float64Array {
 }
 
 /**
- * Follows the tempo through the song: local scores, then the best path (Viterbi) that changes little.
- * @param envelope normalised onset strength
+ * Support for a beat period: it repeats after one beat, and after a bar of four or of three. A pulse of one and a half beats repeats
+ * after itself too, but no bar of it does.
  */
-export function followTempo(envelope: Float64Array, rate: number): TempoCurve {
+function comb(correlation: ArrayLike<number>, lag: number): number {
+  const at = (beats: number): number => sampleAt(correlation, beats * lag);
+  const four = 0.4 * at(2) + 0.6 * at(4);
+  const three = 0.7 * at(3) + 0.3 * at(6);
+  return at(1) + BAR_WEIGHT * Math.max(four, three);
+}
+
+/**
+ * Follows the tempo through the song: local scores, then the best path (Viterbi) that changes little.
+ * @param envelopes normalised onset strengths (of the whole and of parts of the sound), equally long
+ */
+export function followTempo(envelopes: readonly Float64Array[], rate: number): TempoCurve {
   const candidates = tempoCandidates();
-  const windows = Math.max(1, Math.ceil(envelope.length / (STEP_SECONDS * rate)));
+  const length = envelopes[0].length;
+  const windows = Math.max(1, Math.ceil(length / (STEP_SECONDS * rate)));
   const reach = Math.round((WINDOW_SECONDS * rate) / 2);
-  const maxLag = Math.min(2 * reach, Math.ceil((4 * 60 * rate) / TEMPO_RANGE[0]));
+  const maxLag = Math.min(2 * reach, Math.ceil((6 * 60 * rate) / TEMPO_RANGE[0]));
   const scores = Array.from({ length: windows }, (_, w) => {
-    const ac = localAutocorrelation(envelope, Math.round((w + 0.5) * STEP_SECONDS * rate), reach, maxLag);
-    return candidates.map((bpm) => {
-      const lag = (60 / bpm) * rate;
-      const comb = sampleAt(ac, lag) + 0.5 * sampleAt(ac, 2 * lag) + 0.25 * sampleAt(ac, 4 * lag);
-      const prior = Math.exp(-0.5 * (Math.log2(bpm / PRIOR_CENTRE) / PRIOR_OCTAVES) ** 2);
-      return comb * prior;
-    });
+    const mean = new Float64Array(maxLag + 1);
+    for (const envelope of envelopes) {
+      const one = localAutocorrelation(envelope, Math.round((w + 0.5) * STEP_SECONDS * rate), reach, maxLag);
+      for (let lag = 0; lag <= maxLag; lag++) mean[lag] += one[lag] / envelopes.length;
+    }
+    return candidates.map((bpm) => comb(mean, (60 / bpm) * rate) * Math.exp(logTempoPrior(60 / bpm)));
   });
   const path = smoothestPath(scores);
   return { step: STEP_SECONDS, periods: Float64Array.from(path, (c) => 60 / candidates[c]) };

@@ -16,10 +16,10 @@ const ONSET = spec.features.names.indexOf('onset');
 const SIZE = spec.features.fftSize;
 /** Flux frames per feature frame: beats are found on a finer grid than they are stored. */
 const SUBFRAMES = 2;
-/** Flux compares spectra one feature frame apart ... */
+/** Flux compares spectra one feature frame apart. */
 const FLUX_LAG = SUBFRAMES;
-/** ... and peaks this many flux frames early, because a spectrum feels a sound before its centre reaches it. */
-const FLUX_DELAY = SUBFRAMES;
+/** The onset column stands this many flux frames (33 ms) after the rise, where librosa and the dataset's features have it. */
+const ONSET_DELAY = SUBFRAMES;
 /** Chroma is taken from slow sound: the same FFT then tells semitones apart down to the bass. */
 const CHROMA_RATE = spec.features.sampleRate / 4;
 /** Feature frames per chroma frame; CENS smooths over far more. */
@@ -109,8 +109,17 @@ export class FeatureExtractor {
   /** What the beat search works on, for `frames` feature frames. */
   evidence(frames: number): GridEvidence {
     const count = frames * SUBFRAMES;
-    const [all, low, middle, high] = [0, 1, 2, 3].map((band) => this.fluxRows.column(band, count, FLUX_DELAY));
-    return { rate: spec.fps * SUBFRAMES, all, low, middle, high, fps: spec.fps, chroma: this.chromaColumns(frames) };
+    const [all, low, middle, high, level] = [0, 1, 2, 3, 4].map((band) => this.fluxRows.column(band, count));
+    return {
+      rate: spec.fps * SUBFRAMES,
+      all,
+      low,
+      middle,
+      high,
+      level,
+      fps: spec.fps,
+      chroma: this.chromaColumns(frames),
+    };
   }
 
   /** CENS at the feature rate: between chroma frames by linear interpolation. */
@@ -132,7 +141,7 @@ export class FeatureExtractor {
   private assemble(frames: number): { features: Features; grid: BeatGrid } {
     const evidence = this.evidence(frames);
     const data = new Float32Array(frames * COLUMNS);
-    const onset = Float32Array.from({ length: frames }, (_, f) => evidence.all[f * SUBFRAMES]);
+    const onset = Float32Array.from({ length: frames }, (_, f) => evidence.all[f * SUBFRAMES - ONSET_DELAY] ?? 0);
     const top = percentile(onset, ONSET_PERCENTILE);
     for (let f = 0; f < frames; f++) {
       data.set(evidence.chroma.subarray(f * PITCH_CLASSES, (f + 1) * PITCH_CLASSES), f * COLUMNS);

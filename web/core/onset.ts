@@ -35,13 +35,14 @@ export function melBank(bands: number, sampleRate: number, size: number): Sparse
   return sparseBank(rows);
 }
 
-/** Bands of flux kept per frame: all, and the parts that tell kick, snare and cymbals apart. */
-export const FLUX_BANDS = 4;
+/** Numbers kept per frame: flux of all bands and of the parts that tell kick, snare and cymbals apart, and the level. */
+export const FLUX_BANDS = 5;
 /** Upper edges of the low and middle part, hertz. */
 const LOW_HERTZ = 200;
 const MIDDLE_HERTZ = 2000;
 /** Mel power that counts as silence (-80 dB from a loud frame). */
 const POWER_FLOOR = 3e-5;
+const SILENT_DECIBELS = 10 * Math.log10(POWER_FLOOR);
 
 /** Flux of successive spectra. */
 export class FluxMeter {
@@ -65,7 +66,8 @@ export class FluxMeter {
     this.bank = melBank(bands, sampleRate, size);
     this.power = new Float32Array(size / 2);
     this.level = new Float32Array(bands);
-    this.history = Array.from({ length: lag }, () => new Float32Array(bands));
+    // Silence before the song: what sounds in the first frame begins there.
+    this.history = Array.from({ length: lag }, () => new Float32Array(bands).fill(SILENT_DECIBELS));
     const perMel = (bands + 1) / hertzToMel(sampleRate / 2);
     this.lowBands = Math.round(hertzToMel(LOW_HERTZ) * perMel);
     this.middleBands = Math.round(hertzToMel(MIDDLE_HERTZ) * perMel);
@@ -73,7 +75,7 @@ export class FluxMeter {
 
   /**
    * @param amplitudes amplitude spectrum that follows the one given before
-   * @param out 4 numbers: mean rise in decibels over all bands, low, middle and high bands (0 for the first frames)
+   * @param out 5 numbers: mean rise in decibels over all bands, low, middle and high bands; level in decibels (mean of the bands' power)
    */
   next(amplitudes: Float32Array, out: Float32Array): Float32Array {
     const { power, level, bands } = this;
@@ -81,17 +83,20 @@ export class FluxMeter {
     applyBank(this.bank, power, level);
     const before = this.history[this.seen % this.lag];
     out.fill(0);
+    let sum = 0;
     for (let b = 0; b < bands; b++) {
+      sum += level[b];
       const decibels = 10 * Math.log10(Math.max(POWER_FLOOR, level[b]));
       const rise = decibels - before[b];
       before[b] = decibels;
       if (rise > 0) out[b < this.lowBands ? 1 : b < this.middleBands ? 2 : 3] += rise;
     }
-    if (this.seen++ < this.lag) return out.fill(0);
+    this.seen++;
     out[0] = (out[1] + out[2] + out[3]) / bands;
     out[1] /= this.lowBands;
     out[2] /= this.middleBands - this.lowBands;
     out[3] /= bands - this.middleBands;
+    out[4] = 10 * Math.log10(Math.max(POWER_FLOOR, sum / bands));
     return out;
   }
 }
