@@ -42,5 +42,5 @@ render(h(App, { store, thumbnails }), document.getElementById('app')!);
 // Pictures wait until the stage has had its first frames.
 void store.whenReady().then(async () => {
   const { createThumbnailer } = await import('./scene/thumbnails');
-  thumbnails.connect(createThumbnailer());
+  thumbnails.connect(createThumbnailer(), () => store.whenCalm());
 });

@@ -1,16 +1,15 @@
-import { analyse } from '../core/features';
+/** Decoder and analyse worker behind the app's own port. */
+import { decodeSong } from '../audio/decode';
+import { AnalyseClient } from '../workers/analyse-client';
 import type { Listener } from './ports';
 
-export function createListener(): Listener {
+/** The worker starts with the first song. */
+export function createListener(client = new AnalyseClient()): Listener {
   return {
-    async decode(bytes) {
-      const buffer = await new OfflineAudioContext(2, 1, 44100).decodeAudioData(bytes);
+    async decode(bytes, signal) {
+      const buffer = await decodeSong(bytes, signal);
       return { buffer, duration: buffer.duration };
     },
-    async analyse(buffer, hooks) {
-      const a = analyse(buffer.getChannelData(0), buffer.sampleRate);
-      hooks.onHead?.(a.features, a.grid);
-      return { ...a, milliseconds: 0 };
-    },
+    analyse: (buffer, hooks, signal) => client.analyse(buffer, { ...hooks, signal }),
   };
 }

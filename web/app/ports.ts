@@ -77,7 +77,8 @@ export interface Engine {
 
 /** Songs to sound and features. */
 export interface Listener {
-  decode(bytes: ArrayBuffer, name: string): Promise<DecodedSong>;
+  /** The bytes are taken over. */
+  decode(bytes: ArrayBuffer, signal: AbortSignal): Promise<DecodedSong>;
   /** Rejects with an AbortError when `signal` fires. */
   analyse(buffer: AudioBuffer, hooks: AnalyseHooks, signal: AbortSignal): Promise<Analysis>;
 }

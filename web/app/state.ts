@@ -122,6 +122,9 @@ export function createState() {
     view: signal<TimelineView>({ start: 0, pixelsPerSecond: 40 }),
     viewWidth: signal(0),
     followPlayhead: signal(true),
+    cameraFollows: signal(true),
+    /** Counts the wishes to see the figure whole again. */
+    frameRequests: signal(0),
     panel: signal<'poses' | 'dance'>('poses'),
     help: signal(false),
     notices: signal<Notice[]>([]),

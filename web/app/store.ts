@@ -59,11 +59,11 @@ export function createStore(services: Services, measure: Measure) {
 
   const dance = danceActions(context, measure);
   const keys = keyActions(context);
-  const playback = playbackActions(context);
+  const view = viewActions(context);
+  const playback = playbackActions(context, view.revealTime);
   const pose = poseActions(context, keys);
   const songs = songActions(context, dance);
   const project = projectActions(context, songs, dance);
-  const view = viewActions(context);
 
   /** Features and beats of the whole song, waiting for the analysis where it still runs. */
   function analysed(): Promise<{ features: Features; grid: BeatGrid }> {
@@ -102,9 +102,13 @@ export function createStore(services: Services, measure: Measure) {
   function autosave(): void {
     let timer: ReturnType<typeof setTimeout> | undefined;
     let told = false;
+    /** What the page opened with is not the visitor's work. */
+    let opened: ProjectDocument | null = null;
     effect(() => {
       const document = state.document.value;
       if (!state.ready.value || !document.song) return;
+      opened ??= document;
+      if (document === opened) return;
       clearTimeout(timer);
       timer = setTimeout(() => {
         services.storage.saveDocument(document).catch(() => {
@@ -119,15 +123,18 @@ export function createStore(services: Services, measure: Measure) {
     });
   }
 
-  /** Resolves when the page has opened. */
-  const whenReady = () =>
+  const when = (condition: () => boolean) =>
     new Promise<void>((resolve) => {
       const stop = effect(() => {
-        if (!state.ready.value) return;
+        if (!condition()) return;
         resolve();
         queueMicrotask(() => stop());
       });
     });
+  /** Resolves when the page has opened. */
+  const whenReady = () => when(() => state.ready.value);
+  /** Resolves when no song is on its way in and no dance is being made. */
+  const whenCalm = () => when(() => state.songJob.value === null && state.generation.value.status === 'idle');
 
   return {
     state,
@@ -141,6 +148,7 @@ export function createStore(services: Services, measure: Measure) {
     undo,
     redo,
     whenReady,
+    whenCalm,
     notify: context.notify,
   };
 }

@@ -2,6 +2,8 @@ import check from 'lucide-static/icons/check.svg?raw';
 import dices from 'lucide-static/icons/dices.svg?raw';
 import download from 'lucide-static/icons/download.svg?raw';
 import flip from 'lucide-static/icons/flip-horizontal-2.svg?raw';
+import follow from 'lucide-static/icons/video.svg?raw';
+import frame from 'lucide-static/icons/scan.svg?raw';
 import folder from 'lucide-static/icons/folder-open.svg?raw';
 import help from 'lucide-static/icons/circle-question-mark.svg?raw';
 import info from 'lucide-static/icons/info.svg?raw';
@@ -37,6 +39,8 @@ const ICONS = {
   download,
   flip,
   folder,
+  follow,
+  frame,
   help,
   info,
   maximize,

@@ -1,11 +1,13 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { effect } from '@preact/signals';
 import { framePose, type MutableFramePose } from '../core/motion';
+import type { Motion } from '../core/types';
 import type { Stage } from '../scene/stage';
 import type { Store } from '../app/store';
 import { Icon } from './Icon';
 import { chooseFile } from './files';
 import { PoseBar } from './PoseBar';
+import { tip } from './shortcuts';
 import { useStore } from './store-context';
 
 /** The stage and what lies over it. */
@@ -33,6 +35,7 @@ export function StageView() {
       {draft.value ? <PoseBar /> : (!song.value || song.value.demo) && <Welcome />}
       <SoundChip />
       <WorkChip />
+      <CameraTools />
     </main>
   );
 }
@@ -72,6 +75,34 @@ function SoundChip() {
   );
 }
 
+function CameraTools() {
+  const store = useStore();
+  const follows = store.state.cameraFollows.value;
+  return (
+    <div class="camera-tools" role="group" aria-label="Camera">
+      <button
+        type="button"
+        class="tool"
+        aria-pressed={follows}
+        aria-label="Camera follows the dancer"
+        title="Camera follows the dancer"
+        onClick={() => store.toggleCamera()}
+      >
+        <Icon name="follow" />
+      </button>
+      <button
+        type="button"
+        class="tool"
+        aria-label="Show the whole figure"
+        title={tip('frame')}
+        onClick={() => store.frameFigure()}
+      >
+        <Icon name="frame" />
+      </button>
+    </div>
+  );
+}
+
 /** What is being worked on, with the way to stop it. */
 function WorkChip() {
   const store = useStore();
@@ -89,7 +120,7 @@ function WorkChip() {
     const size = made.totalBytes > 0 && !made.cached ? ` (${(made.totalBytes / 1e6).toFixed(0)} MB, only once)` : '';
     return (
       <Work
-        text={`Loading the dancer’s mind${size}`}
+        text={`Getting the dancer ready${size}`}
         fraction={made.fraction}
         tone="motion"
         onCancel={() => store.cancel()}
@@ -128,12 +159,19 @@ async function startStage(container: HTMLElement, store: Store): Promise<() => v
   const pose: MutableFramePose = { root: new Float32Array(3), quaternions: new Float32Array(96) };
   let stage: Stage | null = null;
   let lastBeat = -1;
+  let shownTime = -1;
+  let shownMotion: Motion | null = null;
 
   const onFrame = () => {
     const time = store.tick();
     store.followTime(time);
     const motion = motionAt(store, time);
-    if (stage && motion) stage.show(framePose(motion, time, pose));
+    // A dance that stands still is not drawn again: the graphics card may rest.
+    if (stage && motion && (motion !== shownMotion || time !== shownTime)) {
+      stage.show(framePose(motion, time, pose));
+      shownMotion = motion;
+      shownTime = time;
+    }
     const beat = state.playing.value ? beatIndex(store, time) : -1;
     if (beat >= 0 && beat !== lastBeat) stage?.pulse(isDownbeat(store, beat) ? 0.9 : 0.45);
     lastBeat = beat;
@@ -157,6 +195,12 @@ async function startStage(container: HTMLElement, store: Store): Promise<() => v
       store.changePose(rotations, phase);
     }),
     opened.onSelect((joint) => store.selectJoint(joint)),
+    effect(() => {
+      opened.follow = state.cameraFollows.value;
+    }),
+    effect(() => {
+      if (state.frameRequests.value > 0) opened.frameFigure();
+    }),
     effect(() => {
       const draft = state.draft.value;
       opened.setMode(draft ? 'pose' : 'dance');

@@ -68,6 +68,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { id: 'zoom-in', keys: ['+', '='], label: 'Zoom in', group: 'View', run: (store) => store.zoom(1.5) },
   { id: 'zoom-out', keys: ['-'], label: 'Zoom out', group: 'View', run: (store) => store.zoom(1 / 1.5) },
   { id: 'fit', keys: ['0'], label: 'Show the whole song', group: 'View', run: (store) => store.fit() },
+  { id: 'frame', keys: ['F'], label: 'Show the whole figure', group: 'View', run: (store) => store.frameFigure() },
   { id: 'help', keys: ['?'], label: 'Show the keys', group: 'View', run: (store) => store.toggleHelp() },
   {
     id: 'escape',

@@ -1,6 +1,6 @@
 import { signal, type Signal } from '@preact/signals';
 import { createContext } from 'preact';
-import { useContext, useMemo } from 'preact/hooks';
+import { useContext, useEffect, useMemo, useRef } from 'preact/hooks';
 import { forwardKinematics, PARENTS } from '../core/skeleton';
 import { poseToQuaternions } from '../core/rotation';
 
@@ -12,33 +12,50 @@ export interface Thumbnailer {
 /** Pictures are rendered once at this size (CSS pixels; twice as many real ones) and scaled down where they are shown. */
 const SIZE = 96;
 
-/** Pictures of poses, rendered when first asked for and kept as long as their pose. */
+/** Pictures of poses, rendered when they come into sight and kept as long as their pose. */
 export class Thumbnails {
   readonly #cache = new WeakMap<readonly number[], Signal<string | null>>();
+  readonly #queue: (readonly number[])[] = [];
   #thumbnailer: Thumbnailer | null = null;
-  #waiting: (() => void)[] = [];
+  #calm: () => Promise<void> = () => Promise.resolve();
+  #busy = false;
 
-  /** Gives the renderer; what was asked for before is rendered now. */
-  connect(thumbnailer: Thumbnailer): void {
+  /**
+   * Gives the renderer; what was asked for before is rendered now.
+   * @param calm - Resolves when the page has nothing more urgent to do.
+   */
+  connect(thumbnailer: Thumbnailer, calm: () => Promise<void>): void {
     this.#thumbnailer = thumbnailer;
-    for (const start of this.#waiting.splice(0)) start();
+    this.#calm = calm;
+    void this.#work();
   }
 
   /** The picture's address, null until it is there. */
   of(rotations: readonly number[]): Signal<string | null> {
-    const known = this.#cache.get(rotations);
-    if (known) return known;
-    const address = signal<string | null>(null);
-    this.#cache.set(rotations, address);
-    const start = () => {
-      this.#thumbnailer?.render(rotations, SIZE).then(
-        (url) => (address.value = url),
-        () => undefined, // the drawn figure stays
-      );
-    };
-    if (this.#thumbnailer) start();
-    else this.#waiting.push(start);
+    let address = this.#cache.get(rotations);
+    if (!address) this.#cache.set(rotations, (address = signal<string | null>(null)));
     return address;
+  }
+
+  /** Asks for the picture. */
+  want(rotations: readonly number[]): void {
+    if (this.of(rotations).value || this.#queue.includes(rotations)) return;
+    this.#queue.push(rotations);
+    void this.#work();
+  }
+
+  async #work(): Promise<void> {
+    if (this.#busy || !this.#thumbnailer) return;
+    this.#busy = true;
+    for (let next = this.#queue.shift(); next; next = this.#queue.shift()) {
+      await this.#calm();
+      try {
+        this.of(next).value = await this.#thumbnailer.render(next, SIZE);
+      } catch {
+        break; // no 3D here: the drawn figures stay
+      }
+    }
+    this.#busy = false;
   }
 }
 
@@ -53,6 +70,15 @@ export function PosePicture({ rotations }: { rotations: readonly number[] }) {
 }
 
 function DrawnPose({ rotations }: { rotations: readonly number[] }) {
+  const thumbnails = useContext(ThumbnailsContext);
+  const drawing = useRef<SVGSVGElement>(null);
+  useEffect(() => {
+    const observer = new IntersectionObserver((entries) => {
+      if (entries.some((entry) => entry.isIntersecting)) thumbnails.want(rotations);
+    });
+    observer.observe(drawing.current!);
+    return () => observer.disconnect();
+  }, [rotations, thumbnails]);
   const bones = useMemo(() => {
     const joints = forwardKinematics(poseToQuaternions(rotations), [0, 0, 0]);
     return PARENTS.map((parent, joint) => {
@@ -62,7 +88,7 @@ function DrawnPose({ rotations }: { rotations: readonly number[] }) {
     });
   }, [rotations]);
   return (
-    <svg class="pose-picture drawn" viewBox="-1 -1.05 2 2.1" aria-hidden="true">
+    <svg ref={drawing} class="pose-picture drawn" viewBox="-1 -1.05 2 2.1" aria-hidden="true">
       {bones.map((bone, i) => bone && <line key={i} {...bone} />)}
     </svg>
   );

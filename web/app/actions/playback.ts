@@ -4,7 +4,7 @@ import { lowerBound } from '../snapping';
 import type { Context } from '../context';
 
 /** Actions on playback. */
-export function playbackActions(context: Context) {
+export function playbackActions(context: Context, reveal: (time: number) => void) {
   const { state, services } = context;
   const { player } = services;
 
@@ -17,7 +17,10 @@ export function playbackActions(context: Context) {
     state.time.value = player.time();
   });
 
-  const seek = (time: number) => player.seek(time);
+  const seek = (time: number) => {
+    player.seek(time);
+    reveal(player.time());
+  };
 
   return {
     /** Plays or pauses. A press on Play wants to hear something: it ends the demo's silence. */
@@ -74,7 +77,10 @@ export function playbackActions(context: Context) {
     unlock: () => player.unlock(),
     /** Once a frame: the time on screen follows the clock. */
     tick(): number {
+      const wasPlaying = player.playing;
       player.tick();
+      // The opening demo never leaves an empty stage.
+      if (wasPlaying && !player.playing && state.song.value?.demo) player.play();
       const time = player.time();
       state.time.value = time;
       return time;

@@ -12,15 +12,16 @@ export function projectActions(context: Context, songs: SongActions, dance: Danc
 
   /** The demo's song arrives after its dance: the timer already runs, the sound joins in. */
   async function bringSound(song: Song, url: string): Promise<void> {
+    const { signal } = new AbortController();
     const bytes = await (await songs.fetchSong(url)).arrayBuffer();
-    const { buffer } = await services.listener.decode(bytes, song.reference.name);
+    const { buffer } = await services.listener.decode(bytes, signal);
     if (state.song.value?.reference.hash !== song.reference.hash) return;
     songs.updateSong({ buffer });
     player.attach(buffer);
     const analysis = await services.listener.analyse(
       buffer,
       { onProgress: (_, waveform) => waveform && isCurrent(song) && songs.updateSong({ waveform }) },
-      new AbortController().signal,
+      signal,
     );
     if (!isCurrent(song)) return;
     songs.updateSong({
@@ -72,7 +73,8 @@ export function projectActions(context: Context, songs: SongActions, dance: Danc
     if (!document.song) return false;
     const demo = await services.assets.demo().catch(() => null);
     if (demo?.document.song?.hash === document.song.hash) {
-      await openDemo(document.keyPoses.length > 0 ? document : undefined);
+      const untouched = JSON.stringify(document) === JSON.stringify(demo.document);
+      await openDemo(untouched ? undefined : document);
       return true;
     }
     const blob = await services.storage.loadSong(document.song.hash).catch(() => null);

@@ -98,7 +98,7 @@ export function songActions(context: Context, dance: DanceActions) {
       const hash = await hashBytes(bytes);
       signal.throwIfAborted();
       state.songJob.value = { name: options.name, stage: 'decoding', fraction: 0 };
-      const { buffer, duration } = await services.listener.decode(bytes, options.name);
+      const { buffer, duration } = await services.listener.decode(bytes, signal);
       signal.throwIfAborted();
 
       const reference = { name: options.name, hash, duration, ...(options.url ? { url: options.url } : {}) };

@@ -3,23 +3,33 @@ import type { Context } from '../context';
 
 /** Closest zoom, pixels per second: a frame is 20 px wide. */
 export const MAX_ZOOM = 600;
+/** Room before the first and after the last beat, so that poses there are seen whole, pixels. */
+const VIEW_PADDING = 30;
+/** A new song opens with this much of it in sight, but not below this scale. */
+const OPENING_SECONDS = 24;
+const MIN_OPENING_SCALE = 24;
 /** Where the playhead is put when the view turns its page, as a share of the width. */
 const PAGE_MARGIN = 0.08;
 
 /** Actions on what is shown. */
 export function viewActions({ state }: Context) {
-  const fitScale = () => state.viewWidth.value / Math.max(state.duration.value, 1);
+  const fitScale = () => Math.max(1, state.viewWidth.value - 2 * VIEW_PADDING) / Math.max(state.duration.value, 1);
   const set = (start: number, pixelsPerSecond: number) => {
     const width = state.viewWidth.value;
     if (width <= 0) return;
     const scale = Math.min(Math.max(pixelsPerSecond, fitScale()), Math.max(MAX_ZOOM, fitScale()));
-    const last = Math.max(0, state.duration.value - width / scale);
-    const next = { start: Math.min(Math.max(start, 0), last), pixelsPerSecond: scale };
+    const first = -VIEW_PADDING / scale;
+    const last = Math.max(first, state.duration.value + (VIEW_PADDING - width) / scale);
+    const next = { start: Math.min(Math.max(start, first), last), pixelsPerSecond: scale };
     const now = state.view.value;
     if (next.start !== now.start || next.pixelsPerSecond !== now.pixelsPerSecond) state.view.value = next;
   };
 
   return {
+    /** Camera: follow the dancer or stay. */
+    toggleCamera: () => (state.cameraFollows.value = !state.cameraFollows.value),
+    /** Camera: back to the opening view. */
+    frameFigure: () => (state.frameRequests.value += 1),
     setView: set,
     /** Zooms about a time that stays where it is on screen. */
     zoomAt(factor: number, time: number): void {
@@ -35,7 +45,7 @@ export function viewActions({ state }: Context) {
       this.zoomAt(factor, time >= start && time <= start + span ? time : start + span / 2);
     },
     /** Shows the whole song. */
-    fit: () => set(0, 0),
+    fit: () => set(-Infinity, 0),
     scrollBy: (pixels: number) => {
       const { start, pixelsPerSecond } = state.view.value;
       set(start + pixels / pixelsPerSecond, pixelsPerSecond);
@@ -44,7 +54,17 @@ export function viewActions({ state }: Context) {
     resizeView(width: number): void {
       state.viewWidth.value = width;
       const { start, pixelsPerSecond } = state.view.value;
-      set(start, pixelsPerSecond || Math.max(width / 24, 24));
+      if (pixelsPerSecond > 0) set(start, pixelsPerSecond);
+      else set(-Infinity, Math.max(width / OPENING_SECONDS, MIN_OPENING_SCALE));
+    },
+    /** Scrolls as little as needed to bring a time into sight. */
+    revealTime(time: number): void {
+      const { start, pixelsPerSecond } = state.view.value;
+      if (pixelsPerSecond <= 0) return;
+      const span = state.viewWidth.value / pixelsPerSecond;
+      const margin = Math.min(VIEW_PADDING / pixelsPerSecond, span / 4);
+      if (time < start + margin) set(time - margin, pixelsPerSecond);
+      else if (time > start + span - margin) set(time + margin - span, pixelsPerSecond);
     },
     /** While playing the view turns its page when the playhead leaves it. */
     followTime(time: number): void {

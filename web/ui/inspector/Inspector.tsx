@@ -38,7 +38,14 @@ export function Inspector() {
           </button>
         ))}
       </div>
-      <div id="inspector-panel" class="panel" role="tabpanel" aria-labelledby={`tab-${panel.value}`} tabIndex={-1}>
+      <div
+        key={panel.value}
+        id="inspector-panel"
+        class="panel"
+        role="tabpanel"
+        aria-labelledby={`tab-${panel.value}`}
+        tabIndex={-1}
+      >
         {panel.value === 'dance' ? <DancePanel /> : draft.value ? <PoseEditor /> : <Library />}
       </div>
     </aside>

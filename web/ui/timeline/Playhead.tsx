@@ -19,7 +19,8 @@ export function Playhead() {
     const element = line.current;
     if (!element) return;
     element.style.transform = `translateX(${x}px)`;
-    element.style.visibility = x < -8 || x > state.viewWidth.value + 8 ? 'hidden' : 'visible';
+    // Out of sight it must still take the keyboard, so it is never hidden from it.
+    element.style.opacity = x < -8 || x > state.viewWidth.value + 8 ? '0' : '1';
   });
   const tenth = useComputed(() => Math.floor(state.time.value * 10) / 10);
   const place = useComputed(() => {

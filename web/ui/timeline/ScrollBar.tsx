@@ -27,7 +27,7 @@ export function ScrollBar() {
 
   return (
     <div class={`scrollbar ${share >= 1 ? 'whole' : ''}`} aria-hidden="true" onPointerDown={onPointerDown}>
-      <div class="scrollbar-thumb" style={{ left: `${(start / whole) * 100}%`, width: `${share * 100}%` }} />
+      <div class="scrollbar-thumb" style={{ left: `${Math.max(0, start / whole) * 100}%`, width: `${share * 100}%` }} />
     </div>
   );
 }

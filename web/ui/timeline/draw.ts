@@ -44,6 +44,21 @@ const MIN_BEAT_PIXELS = 9;
 const MIN_BAR_PIXELS = 18;
 const MIN_NUMBER_PIXELS = 44;
 
+/** A song quieter than this is drawn quiet. */
+const QUIET = 0.05;
+
+const peaks = new WeakMap<Waveform, number>();
+
+/** The loudest sample, so that every song fills its lane. */
+function peakOf(waveform: Waveform): number {
+  let peak = peaks.get(waveform);
+  if (peak === undefined) {
+    peak = waveform.max.reduce((most, value, i) => Math.max(most, value, -waveform.min[i]), 0);
+    peaks.set(waveform, peak);
+  }
+  return peak;
+}
+
 type Brush = CanvasRenderingContext2D;
 
 /** Draws everything; `ratio` is the device's pixels per CSS pixel. */
@@ -65,13 +80,14 @@ export function drawTimeline(canvas: HTMLCanvasElement, picture: Picture, ratio:
 
 function drawLanes(brush: Brush, { width, view, duration }: Picture): void {
   brush.clearRect(0, 0, width, LANES_HEIGHT);
+  const start = Math.max(0, timeToX(view, 0));
   const end = Math.min(width, timeToX(view, duration));
   brush.fillStyle = COLOURS.laneAlt;
-  brush.fillRect(0, 0, end, LANES_HEIGHT);
+  brush.fillRect(start, 0, end - start, LANES_HEIGHT);
   brush.fillStyle = COLOURS.lane;
-  brush.fillRect(0, LANES.wave.top, end, LANES.wave.height + LANES.onset.height);
+  brush.fillRect(start, LANES.wave.top, end - start, LANES.wave.height + LANES.onset.height);
   brush.fillStyle = COLOURS.line;
-  for (const lane of [LANES.wave, LANES.keys, LANES.range]) brush.fillRect(0, lane.top, end, 1);
+  for (const lane of [LANES.wave, LANES.keys, LANES.range]) brush.fillRect(start, lane.top, end - start, 1);
 }
 
 function drawLoop(brush: Brush, { loop, view }: Picture): void {
@@ -122,7 +138,7 @@ function drawSeconds(brush: Brush, view: TimelineView, width: number, duration: 
   brush.font = '11px system-ui, sans-serif';
   brush.textBaseline = 'middle';
   const end = Math.min(duration, xToTime(view, width));
-  for (let second = Math.floor(view.start / step) * step; second <= end; second += step) {
+  for (let second = Math.max(0, Math.floor(view.start / step)) * step; second <= end; second += step) {
     const x = Math.round(timeToX(view, second));
     brush.fillStyle = COLOURS.bar;
     brush.fillRect(x, 12, 1, 12);
@@ -136,12 +152,14 @@ function drawWaveform(brush: Brush, { waveform, view, width, duration }: Picture
   const reach = LANES.wave.height / 2 - 4;
   const end = Math.min(width, timeToX(view, duration));
   brush.fillStyle = COLOURS.musicDim;
-  brush.fillRect(0, Math.round(middle), end, 1);
+  const start = Math.max(0, timeToX(view, 0));
+  brush.fillRect(start, Math.round(middle), end - start, 1);
   if (!waveform) return;
   const { min, max, rate } = waveform;
+  const gain = 1 / Math.max(QUIET, peakOf(waveform));
   brush.fillStyle = COLOURS.music;
   const perPixel = rate / view.pixelsPerSecond;
-  for (let x = 0; x < end; x += 1) {
+  for (let x = Math.floor(start); x < end; x += 1) {
     const first = Math.floor(view.start * rate + x * perPixel);
     const last = Math.min(max.length, Math.max(first + 1, Math.floor(view.start * rate + (x + 1) * perPixel)));
     if (first >= max.length) break;
@@ -151,8 +169,8 @@ function drawWaveform(brush: Brush, { waveform, view, width, duration }: Picture
       if (min[i] < low) low = min[i];
       if (max[i] > high) high = max[i];
     }
-    const top = middle - Math.min(1, high) * reach;
-    const bottom = middle - Math.max(-1, low) * reach;
+    const top = middle - Math.min(1, high * gain) * reach;
+    const bottom = middle - Math.max(-1, low * gain) * reach;
     if (bottom - top > 0.5) brush.fillRect(x, top, 1, bottom - top);
   }
 }
