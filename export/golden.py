@@ -30,7 +30,7 @@ from rotation import (
     quaternion_to_axis_angle,
     slerp,
 )
-from samples import synthetic_inputs, synthetic_motion
+from samples import randomise, synthetic_inputs, synthetic_motion
 from skeleton import forward_kinematics, mirror_motion, world_rotations
 from spec import FPS, JOINT_COUNT, ROTATION_SIZE, SPEC, spec_hash
 from windows import key_distances, to_local_frame
@@ -155,11 +155,9 @@ def measures() -> dict:
 
 
 def tiny_model() -> KeyPoseDancer:
-    """A model of random weights, small enough for tests; its head is not zero, so every input matters."""
+    """A model of random weights, small enough for tests."""
     torch.manual_seed(11)
-    model = KeyPoseDancer(ModelConfig.named("tiny"))
-    torch.nn.init.normal_(model.head.weight, std=0.05)
-    return model.eval()
+    return randomise(KeyPoseDancer(ModelConfig.named("tiny")), 11).eval()
 
 
 def write_tiny(out: Path) -> None:
@@ -173,17 +171,28 @@ def write_tiny(out: Path) -> None:
     write_arrays(out, "tiny", arrays, {"tolerance": 1e-4})
 
 
+def contract() -> dict:
+    """The hash of the spec that all of this belongs to."""
+    return {"specHash": spec_hash(), "version": SPEC["version"]}
+
+
+SECTIONS = {
+    "spec": "contract",
+    "rotations": "rotations",
+    "kinematics": "kinematics",
+    "positional": "positional",
+    "metrics": "measures",
+}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", required=True)
     args = parser.parse_args()
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
-    spec = {"specHash": spec_hash(), "version": SPEC["version"]}
-    sections = {"spec": spec, "rotations": rotations(), "kinematics": kinematics(), "positional": positional()}
-    sections["metrics"] = measures()
-    for name, values in sections.items():
-        (out / f"{name}.json").write_text(json.dumps(values) + "\n", encoding="utf-8")
+    for name, section in SECTIONS.items():
+        (out / f"{name}.json").write_text(json.dumps(globals()[section]()) + "\n", encoding="utf-8")
     write_tiny(out)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from data import CHROMA, beat_columns
 from rotation import axis_angle_to_matrix, matrix_to_six_d
@@ -44,3 +44,13 @@ def synthetic_inputs(batch: int, seed_frames: int, frames: int, seed: int) -> di
         for name, value in zip(inputs, values):
             inputs[name].append(value)
     return {name: torch.stack(values) for name, values in inputs.items()}
+
+
+def randomise(model: nn.Module, seed: int, size: float = 0.05) -> nn.Module:
+    """Fills the zero-initialised matrices (head, ends of layers) with noise, so that every input and layer matters."""
+    rng = torch.Generator().manual_seed(seed)
+    with torch.no_grad():
+        for parameter in model.parameters():
+            if parameter.ndim == 2 and not parameter.any():
+                parameter.normal_(0, size, generator=rng)
+    return model

@@ -45,6 +45,7 @@ class TrainConfig:
     weight_decay: float = 0.0
     dropout: float = -1.0  # below 0: what the model config says
     clip_norm: float = 1.0
+    grow: tuple[float, ...] = ()  # shares of the run at which more layers join; (0.4, 0.7): a third, two thirds, all
     precision: str = "fp32"  # fp32 | bf16 | fp16 (fp16 needs a GPU)
     seed: int = 0
     validate_every: int = 500
@@ -62,10 +63,12 @@ class Trainer:
         if config.dropout >= 0:
             model_config.dropout = config.dropout
         self.model = KeyPoseDancer(model_config).to(config.device)
+        train = [clip for clip in clips if clip.split == "train"]
+        statistics = WindowSampler(train, 4 * config.tokens, (MUSIC_FRAMES // 2,), seed=config.seed + 1)
+        self.model.fit_inputs([statistics.batch() for _ in range(8)])
         self.averaged = copy.deepcopy(self.model).requires_grad_(False).eval()
         self.optimiser = torch.optim.AdamW(self.model.parameters(), config.lr, betas=(0.9, 0.99), weight_decay=config.weight_decay, fused=True)
         self.scaler = torch.amp.GradScaler(config.device, enabled=config.precision == "fp16")
-        train = [clip for clip in clips if clip.split == "train"]
         self.sampler = WindowSampler(train, config.tokens, tuple(config.lengths), seed=config.seed)
         self.validation = validation_batches([clip for clip in clips if clip.split == "val"])
         self.step, self.seconds = 0, 0.0
@@ -83,11 +86,21 @@ class Trainer:
         done = self.seconds / (60 * self.config.minutes) if self.config.minutes > 0 else self.step / self.config.steps
         return min(done, 1.0)
 
+    def set_depth(self) -> None:
+        """Lets the layers run that have joined by now."""
+        stages, joined = len(self.config.grow), sum(self.progress() >= share for share in self.config.grow)
+        share = (joined + 1) / (stages + 1)
+        sizes = self.model.config
+        depth = math.ceil(sizes.encoder_layers * share - 0.5) or 1, math.ceil(sizes.cross_layers * share)
+        for model in (self.model, self.averaged):
+            model.set_depth(*depth)
+
     def train_step(self) -> dict[str, float]:
         """One optimiser step -> loss terms, rate and gradient norm."""
         started = time.monotonic()
         c = self.config
         rate = self.learning_rate()
+        self.set_depth()
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         batch = {name: value.to(c.device) for name, value in self.sampler.batch().items()}
@@ -204,6 +217,10 @@ def _record(out: Path, args: argparse.Namespace, config: TrainConfig, loss: Loss
         file.write(json.dumps(entry) + "\n")
 
 
+def _plain(value):
+    return tuple(value) if isinstance(value, list) else value
+
+
 def _parse() -> tuple[argparse.Namespace, TrainConfig, LossConfig]:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", required=True, help="prepared data folder, or AIST++ as downloaded")
@@ -218,11 +235,11 @@ def _parse() -> tuple[argparse.Namespace, TrainConfig, LossConfig]:
             if isinstance(value, bool):
                 parser.add_argument(flag, action="store_true", default=value)
             elif isinstance(value, tuple):
-                parser.add_argument(flag, type=type(value[0]), nargs="+", default=value)
+                parser.add_argument(flag, type=type(value[0]) if value else float, nargs="+", default=value)
             else:
                 parser.add_argument(flag, type=type(value), default=value)
     args = parser.parse_args()
-    filled = [type(default)(**{name: getattr(args, name) for name in asdict(default)}) for default in configs]
+    filled = [type(default)(**{name: _plain(getattr(args, name)) for name in asdict(default)}) for default in configs]
     return args, *filled
 
 
