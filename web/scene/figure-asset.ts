@@ -1,4 +1,4 @@
-import { BufferAttribute, BufferGeometry, Sphere, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry } from 'three';
 import { decodeFigure, mirrorFigure } from './figure-file';
 import url from './figure.bin?url';
 
@@ -33,14 +33,15 @@ export function buildGeometry(bytes: Uint8Array): BufferGeometry {
   const figure = mirrorFigure(decodeFigure(bytes));
   const geometry = new BufferGeometry();
   const surface = new Float32Array(figure.parts.length * 2);
-  figure.parts.forEach((part, v) => surface.set([figure.openness[v], part], v * 2));
+  for (let v = 0; v < figure.parts.length; v++) {
+    surface[v * 2] = figure.openness[v];
+    surface[v * 2 + 1] = figure.parts[v];
+  }
   geometry.setAttribute('position', new BufferAttribute(figure.positions, 3));
   geometry.setAttribute('normal', new BufferAttribute(figure.normals, 3));
   geometry.setAttribute('skinIndex', new BufferAttribute(figure.bones, 4));
   geometry.setAttribute('skinWeight', new BufferAttribute(figure.weights, 4));
   geometry.setAttribute('surface', new BufferAttribute(surface, 2));
   geometry.setIndex(new BufferAttribute(new Uint16Array(figure.triangles), 1));
-  // Any pose fits in this sphere round the pelvis; three would otherwise skin every vertex on the CPU to find out.
-  geometry.boundingSphere = new Sphere(new Vector3(), 1.6);
   return geometry;
 }

@@ -105,9 +105,10 @@ export function decodeFigure(bytes: Uint8Array): HalfFigure {
   for (let slot = 0; slot < 4; slot++) for (let v = 0; v < n; v++) half.bones[v * 4 + slot] = bytes[at++];
   for (let slot = 0; slot < 4; slot++) for (let v = 0; v < n; v++) half.weights[v * 4 + slot] = bytes[at++];
   for (let v = 0; v < n; v++) {
-    const row = half.weights.subarray(v * 4, v * 4 + 4);
-    const sum = row[0] + row[1] + row[2] + row[3];
-    for (let slot = 0; slot < 4; slot++) row[slot] /= sum;
+    const row = v * 4;
+    const { weights } = half;
+    const sum = weights[row] + weights[row + 1] + weights[row + 2] + weights[row + 3];
+    for (let slot = 0; slot < 4; slot++) weights[row + slot] /= sum;
   }
   let index = 0;
   for (let i = 0; i < m; i++, at += 4) half.triangles[i] = index += unzigzag(view.getUint32(at, true));
@@ -177,9 +178,17 @@ function octahedral(normals: Float32Array, v: number): [number, number] {
 }
 
 function fromOctahedral(normals: Float32Array, v: number): void {
-  let [x, y] = normals.subarray(v * 3, v * 3 + 2);
+  const at = v * 3;
+  let x = normals[at];
+  let y = normals[at + 1];
   const z = 1 - Math.abs(x) - Math.abs(y);
-  if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
-  const length = Math.hypot(x, y, z);
-  normals.set([x / length, y / length, z / length], v * 3);
+  if (z < 0) {
+    const folded = (1 - Math.abs(y)) * (x < 0 ? -1 : 1);
+    y = (1 - Math.abs(x)) * (y < 0 ? -1 : 1);
+    x = folded;
+  }
+  const length = Math.sqrt(x * x + y * y + z * z);
+  normals[at] = x / length;
+  normals[at + 1] = y / length;
+  normals[at + 2] = z / length;
 }

@@ -79,6 +79,6 @@ float boxes = 1.4 * softBox(ray, vec3(0.30, 0.81, 0.50), 0.80, blur)
   + 0.5 * softBox(ray, vec3(0.93, 0.20, -0.30), 0.86, blur);
 float mirror = (0.04 + 0.5 * grazing) * (1.0 - 0.75 * material.roughness);
 reflectedLight.indirectSpecular += mirror * open * (boxes * vec3(1.0, 0.98, 0.95) + vec3(0.10, 0.12, 0.16) * (ray.y * 0.5 + 0.7));
-reflectedLight.indirectDiffuse *= mix(1.0, open, 0.7);
+reflectedLight.indirectDiffuse *= mix(1.0, open, 0.6);
 reflectedLight.indirectDiffuse += diffuseColor.rgb * vec3(0.55, 0.62, 0.8) * 0.22 * grazing * open;
 reflectedLight.directDiffuse *= mix(1.0, open, 0.2);`;

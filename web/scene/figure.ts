@@ -1,4 +1,15 @@
-import { Bone, DataTexture, FloatType, Matrix4, RGBAFormat, Skeleton, SkinnedMesh, type BufferGeometry } from 'three';
+import {
+  Bone,
+  DataTexture,
+  FloatType,
+  Matrix4,
+  RGBAFormat,
+  Skeleton,
+  SkinnedMesh,
+  Sphere,
+  Vector3,
+  type BufferGeometry,
+} from 'three';
 import type { FramePose } from '../core/types';
 import { createFigureMaterial } from './figure-material';
 import { SKIN_BONES, SkinPose } from './skin-bones';
@@ -38,12 +49,15 @@ export class Figure {
   readonly mesh: SkinnedMesh;
   /** World positions and rotations of the joints of the last pose. */
   readonly pose = new SkinPose();
+  private readonly bounds = new Sphere(new Vector3(), 1.6);
   private readonly skeleton = new FigureSkeleton(this.pose);
 
   constructor(geometry: BufferGeometry) {
     this.mesh = new SkinnedMesh(geometry, createFigureMaterial());
     this.mesh.bind(this.skeleton, new Matrix4());
     this.mesh.frustumCulled = false;
+    // Any pose fits in this sphere round the pelvis; without it three would skin every vertex on the CPU to sort the scene.
+    this.mesh.boundingSphere = this.bounds;
     this.mesh.castShadow = true;
     this.mesh.receiveShadow = true;
   }
@@ -51,6 +65,7 @@ export class Figure {
   /** Moves the figure. */
   show(pose: FramePose): void {
     this.pose.set(pose.quaternions, pose.root);
+    this.bounds.center.fromArray(this.pose.joints);
     this.skeleton.refresh();
   }
 

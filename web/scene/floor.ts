@@ -34,7 +34,11 @@ const BLOCKERS: [number, number][] = (
 export class Floor {
   readonly mesh: Mesh;
   private readonly blockers = BLOCKERS.map(() => new Vector4());
-  private readonly uniforms = { blockers: { value: this.blockers }, glow: { value: 0 } };
+  private readonly uniforms = {
+    blockers: { value: this.blockers },
+    glow: { value: 0 },
+    horizon: { value: STAGE_COLOURS.horizon },
+  };
 
   constructor() {
     const material = new MeshLambertMaterial({ color: STAGE_COLOURS.floor, transparent: true, dithering: true });
@@ -119,6 +123,7 @@ export function createBackdrop(): Mesh {
 const DECLARATIONS = /* glsl */ `
 uniform vec4 blockers[${BLOCKERS.length}];
 uniform float glow;
+uniform vec3 horizon;
 varying vec3 vFloor;
 varying vec2 vLocal;
 float gridLine(vec2 at, float spacing, float width) {
@@ -144,4 +149,6 @@ float lines = 0.5 * gridLine(vFloor.xz, 1.0, 0.005);
 outgoingLight += vec3(0.11, 0.125, 0.16) * lines * exp(-away * away * 0.11) * open;
 float ring = exp(-pow((away - 0.55 - 0.75 * (1.0 - glow)) * 5.0, 2.0)) + 0.5 * exp(-away * away * 1.4);
 outgoingLight += vec3(0.16, 0.14, 0.34) * ring * glow * glow;
-diffuseColor.a = 1.0 - smoothstep(2.6, 8.6, away);`;
+// Far off the floor takes the backdrop's colour before it fades, so that no dark band is left between them.
+outgoingLight = mix(outgoingLight, horizon, smoothstep(1.2, 7.0, away));
+diffuseColor.a = 1.0 - smoothstep(4.0, 8.8, away);`;

@@ -49,6 +49,12 @@ export class FollowCamera {
     this.goal[1] += dz * share;
   }
 
+  /** Sends the camera's centre to a point, whatever `follow` says next. */
+  centreOn(x: number, z: number): void {
+    this.goal[0] = x;
+    this.goal[1] = z;
+  }
+
   /** Centre of the stage's light and shadow: the eased position of the dancer. */
   get centre(): [number, number] {
     return [this.springs[0].value, this.springs[1].value];

@@ -18,7 +18,7 @@ export class Lights {
     const { shadow } = this.key;
     shadow.mapSize.set(1024, 1024);
     Object.assign(shadow.camera, { left: -1.7, right: 1.7, top: 1.9, bottom: -1.6, near: 1, far: 9 });
-    shadow.radius = 5;
+    shadow.radius = 3.5;
     shadow.bias = -0.0004;
     shadow.normalBias = 0.018;
   }

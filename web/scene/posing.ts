@@ -39,7 +39,8 @@ export class Posing {
   readonly selectListeners = new Set<(joint: number | null) => void>();
   readonly hoverListeners = new Set<(hover: JointHover | null) => void>();
   readonly handles = new Handles();
-  private readonly gizmo: TransformControls;
+  /** Made when pose mode is first entered: most visitors watch before they pose. */
+  private gizmo: TransformControls | null = null;
   /** Stands for the joint's parent and the joint; the gizmo turns the inner one. */
   private readonly frame = new Group();
   private readonly proxy = new Object3D();
@@ -52,29 +53,9 @@ export class Posing {
   private nudgeTimer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly host: PosingHost) {
-    this.gizmo = new TransformControls(host.camera, host.element);
-    this.gizmo.setMode('rotate');
-    this.gizmo.setSpace('local');
-    this.gizmo.setSize(0.62);
-    this.gizmo.setColors('#ff7a70', '#7fd18b', '#6aa8ff', ACCENT);
-    this.gizmo.showXYZE = false;
-    this.gizmo.enabled = false;
     this.frame.add(this.proxy);
     this.frame.visible = false;
-    this.gizmo.getHelper().visible = false;
-    host.scene.add(this.frame, this.gizmo.getHelper(), this.handles.points);
-    this.gizmo.addEventListener('change', host.changed);
-    this.gizmo.addEventListener('mouseDown', () => {
-      this.flush();
-      this.edit.start();
-    });
-    this.gizmo.addEventListener('objectChange', () => {
-      if (this.selected === null || !this.edit.open) return;
-      this.edit.setJoint(this.selected, this.proxy.quaternion.toArray());
-      this.refresh();
-    });
-    this.gizmo.addEventListener('mouseUp', () => this.edit.commit());
-    this.gizmo.addEventListener('dragging-changed', ({ value }) => host.orbit(!value));
+    host.scene.add(this.frame, this.handles.points);
     this.listen();
   }
 
@@ -87,6 +68,7 @@ export class Posing {
       this.hover(null);
     }
     this.active = active;
+    if (active) this.gizmo ??= this.createGizmo();
     this.handles.points.visible = active;
     if (active) this.refresh();
     this.host.changed();
@@ -105,17 +87,19 @@ export class Posing {
     if (joint === this.selected) return;
     this.flush();
     this.selected = joint;
-    if (joint === null) this.gizmo.detach();
-    else this.gizmo.attach(this.proxy);
-    this.gizmo.enabled = joint !== null;
-    this.gizmo.getHelper().visible = joint !== null;
+    if (this.gizmo) {
+      if (joint === null) this.gizmo.detach();
+      else this.gizmo.attach(this.proxy);
+      this.gizmo.enabled = joint !== null;
+      this.gizmo.getHelper().visible = joint !== null;
+    }
     this.refresh();
     for (const listener of this.selectListeners) listener(joint);
   }
 
   /** Turns the selected joint about one of its own axes; quick repeats are one change. */
   nudge(axis: 'x' | 'y' | 'z', radians: number): void {
-    if (!this.active || this.selected === null || this.gizmo.dragging) return;
+    if (!this.active || this.selected === null || this.dragging) return;
     this.edit.rotate(this.selected, axis, radians);
     this.refresh();
     clearTimeout(this.nudgeTimer);
@@ -146,9 +130,39 @@ export class Posing {
   dispose(): void {
     clearTimeout(this.nudgeTimer);
     this.abort.abort();
-    this.gizmo.detach();
-    this.gizmo.dispose();
+    this.gizmo?.detach();
+    this.gizmo?.dispose();
     this.handles.dispose();
+  }
+
+  private createGizmo(): TransformControls {
+    const gizmo = new TransformControls(this.host.camera, this.host.element);
+    gizmo.setMode('rotate');
+    gizmo.setSpace('local');
+    gizmo.setSize(0.62);
+    gizmo.setColors('#ff7a70', '#7fd18b', '#6aa8ff', ACCENT);
+    gizmo.showXYZE = false;
+    gizmo.enabled = false;
+    gizmo.getHelper().visible = false;
+    this.host.scene.add(gizmo.getHelper());
+    gizmo.addEventListener('change', this.host.changed);
+    gizmo.addEventListener('mouseDown', () => {
+      clearTimeout(this.nudgeTimer);
+      this.edit.commit();
+      this.edit.start();
+    });
+    gizmo.addEventListener('objectChange', () => {
+      if (this.selected === null || !this.edit.open) return;
+      this.edit.setJoint(this.selected, this.proxy.quaternion.toArray());
+      this.refresh();
+    });
+    gizmo.addEventListener('mouseUp', () => this.edit.commit());
+    gizmo.addEventListener('dragging-changed', ({ value }) => this.host.orbit(!value));
+    return gizmo;
+  }
+
+  private get dragging(): boolean {
+    return this.gizmo?.dragging ?? false;
   }
 
   private listen(): void {
@@ -161,14 +175,14 @@ export class Posing {
       (event) => {
         this.pressed =
           event.isPrimary && event.button === 0 ? { x: event.clientX, y: event.clientY, id: event.pointerId } : null;
-        if (this.gizmo.dragging) this.pressed = null;
+        if (this.dragging) this.pressed = null;
       },
       { signal },
     );
     element.addEventListener('pointerup', (event) => this.onUp(event), { signal });
     element.addEventListener('pointercancel', () => this.cancelDrag(), { signal });
     const key = (event: KeyboardEvent) => {
-      this.gizmo.setRotationSnap(event.shiftKey ? MathUtils.degToRad(15) : null);
+      this.gizmo?.setRotationSnap(event.shiftKey ? MathUtils.degToRad(15) : null);
       if (event.type === 'keydown' && event.key === 'Escape' && this.edit.open) {
         event.stopPropagation();
         this.cancelDrag();
@@ -179,14 +193,14 @@ export class Posing {
   }
 
   private onMove(event: PointerEvent): void {
-    if (!this.active || this.gizmo.dragging || event.buttons !== 0) return;
-    this.hover(this.gizmo.axis ? null : this.at(event));
+    if (!this.active || this.dragging || event.buttons !== 0) return;
+    this.hover(this.gizmo?.axis ? null : this.at(event));
   }
 
   private onUp(event: PointerEvent): void {
     const { pressed } = this;
     this.pressed = null;
-    if (!this.active || !pressed || pressed.id !== event.pointerId || this.gizmo.dragging) return;
+    if (!this.active || !pressed || pressed.id !== event.pointerId || this.dragging) return;
     if (Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > CLICK_SLACK) return;
     this.select(this.at(event));
   }
@@ -227,7 +241,7 @@ export class Posing {
   private flush(): void {
     clearTimeout(this.nudgeTimer);
     this.nudgeTimer = undefined;
-    if (!this.gizmo.dragging) this.edit.commit();
+    if (!this.dragging) this.edit.commit();
   }
 
   private cancelDrag(): void {
@@ -239,7 +253,7 @@ export class Posing {
   }
 
   private endDrag(): void {
-    if (!this.gizmo.dragging) return;
+    if (!this.gizmo?.dragging) return;
     this.gizmo.dragging = false;
     this.gizmo.axis = null;
   }

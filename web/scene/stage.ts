@@ -72,6 +72,7 @@ class WebGLStage implements Stage {
   private readonly draws: number[] = [];
   private readonly last: { root: Float32Array; quaternions: Float32Array };
   private figure: Figure | null = null;
+  private wantsFollow = true;
   private glow = 0;
   private dirty = true;
   private seen = true;
@@ -107,11 +108,12 @@ class WebGLStage implements Stage {
   }
 
   get follow(): boolean {
-    return this.view.follow;
+    return this.wantsFollow;
   }
 
   set follow(on: boolean) {
-    this.view.follow = on;
+    this.wantsFollow = on;
+    this.view.follow = on || this.mode === 'pose';
   }
 
   show(pose: FramePose): void {
@@ -129,8 +131,10 @@ class WebGLStage implements Stage {
     if (mode === this.mode) return;
     this.mode = mode;
     this.posing.setActive(mode === 'pose');
+    // The edited figure stands at the stage's centre, so the camera must come even if it does not follow the dance.
+    this.view.follow = mode === 'pose' || this.wantsFollow;
     if (mode === 'dance') this.draw();
-    else this.view.aim(0, 0);
+    else this.view.centreOn(0, 0);
   }
 
   editPose(rotations: ArrayLike<number>): void {
@@ -194,8 +198,14 @@ class WebGLStage implements Stage {
   private async loadFigure(): Promise<void> {
     const geometry = await loadFigure();
     if (this.disposed) return;
-    this.figure = new Figure(geometry);
-    this.scene.add(this.figure.mesh);
+    const figure = new Figure(geometry);
+    this.scene.add(figure.mesh);
+    figure.show(this.last);
+    // Shaders are built beside the page's own work; nothing is drawn until they are there.
+    await this.renderer.compileAsync(this.scene, this.view.camera);
+    if (this.disposed) return figure.dispose();
+    this.figure = figure;
+    this.dirty = true;
     if (this.mode === 'dance') this.draw();
     else this.posing.refresh();
   }
@@ -226,7 +236,7 @@ class WebGLStage implements Stage {
     this.posing.handles.ratio = this.governor.ratio;
     this.view.resize(width, height);
     // Drawn at once: an emptied canvas must not flash.
-    if (this.before) this.render();
+    if (this.figure) this.render();
   }
 
   private readonly tick = (now: number): void => {
@@ -241,7 +251,7 @@ class WebGLStage implements Stage {
       this.floor.glow = this.glow;
       this.dirty = true;
     }
-    const draw = this.dirty && this.seen;
+    const draw = this.dirty && this.seen && this.figure !== null;
     if (draw) {
       const ratio = this.drewBefore ? this.governor.sample(elapsed) : undefined;
       if (ratio !== undefined) this.resize();
@@ -258,7 +268,7 @@ class WebGLStage implements Stage {
     this.floor.follow(x, z);
     this.lights.follow(x, z);
     this.backdrop.position.copy(this.view.camera.position);
-    if (this.figure) this.floor.shade(this.figure.pose.joints);
+    this.floor.shade(this.figure!.pose.joints);
     this.renderer.render(this.scene, this.view.camera);
   }
 }
@@ -272,6 +282,8 @@ function createRenderer(): WebGLRenderer {
       'This browser cannot show 3D (WebGL 2 is off). Turn on hardware acceleration or try another browser.',
     );
   }
+  // Reading a shader's log waits for it to be built: worth it only while developing.
+  renderer.debug.checkShaderErrors = import.meta.env.DEV;
   renderer.toneMapping = NeutralToneMapping;
   renderer.toneMappingExposure = 1.05;
   renderer.shadowMap.enabled = true;

@@ -102,21 +102,36 @@ class Studio {
     const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     renderer.setClearColor(0, 0);
     renderer.toneMapping = NeutralToneMapping;
-    renderer.toneMappingExposure = 1.25;
-    return new Studio(renderer, new Figure(geometry));
+    renderer.toneMappingExposure = 1.15;
+    renderer.debug.checkShaderErrors = import.meta.env.DEV;
+    const studio = new Studio(renderer, new Figure(geometry));
+    await renderer.compileAsync(studio.scene, studio.camera);
+    return studio;
   }
 
-  picture(rotations: ArrayLike<number>, size: number): Promise<Blob> {
+  async picture(rotations: ArrayLike<number>, size: number): Promise<Blob> {
     const quaternions = poseToQuaternions(rotations);
     this.figure.show({ root: standingRoot(quaternions), quaternions });
     this.aim(headingOf(quaternions) + TURN);
     this.renderer.setSize(size * 2, size * 2, false);
     this.renderer.render(this.scene, this.camera);
+    await this.drawn();
     return new Promise((resolve, reject) =>
       this.renderer.domElement.toBlob((blob) =>
         blob ? resolve(blob) : reject(new Error('The picture of the pose could not be made.')),
       ),
     );
+  }
+
+  /** Resolves when the picture is drawn; reading it any earlier would hold up the page until it is. */
+  private async drawn(): Promise<void> {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (!fence) return;
+    gl.flush();
+    for (let wait = 0; wait < 500 && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED; wait++)
+      await new Promise((resolve) => setTimeout(resolve, 4));
+    gl.deleteSync(fence);
   }
 
   dispose(): void {
@@ -149,7 +164,7 @@ class Studio {
     const half = (Math.max(bounds.right - bounds.left, bounds.top - bounds.bottom, SMALLEST_VIEW) / 2) * 1.05;
     const x = (bounds.left + bounds.right) / 2;
     // A figure lower than the view stands at its bottom, as on a floor.
-    const y = Math.max((bounds.bottom + bounds.top) / 2, bounds.bottom + half / 1.05 - 0.0);
+    const y = Math.max((bounds.bottom + bounds.top) / 2, bounds.bottom + half / 1.05);
     this.camera.position.copy(back).multiplyScalar(6).addScaledVector(right, x).addScaledVector(up, y);
     this.camera.up.copy(up);
     this.camera.lookAt(this.camera.position.clone().sub(back));

@@ -1,0 +1,147 @@
+import { describe, expect, it } from 'vitest';
+import { forwardKinematics, JOINT_COUNT, jointIndex, PARENTS, worldRotations } from '../../web/core/skeleton';
+import { angleBetween, axisAngleToQuaternion, multiply, poseToQuaternions } from '../../web/core/rotation';
+import { CAPSULES, pickBody, placePoint, rayCapsule, standingRoot, SUPPORTS } from '../../web/scene/body-points';
+import { headingOf } from '../../web/scene/heading';
+import { jointLabel, PoseEdit, rotateLocal } from '../../web/scene/pose-edit';
+import { REST_HEIGHT } from '../../web/scene/rest';
+
+const rest = () => new Array<number>(JOINT_COUNT * 3).fill(0);
+const bent = () => {
+  const pose = rest();
+  pose[jointIndex('left_shoulder') * 3 + 2] = -0.7;
+  pose[jointIndex('left_elbow') * 3 + 1] = -0.9;
+  pose[1] = 0.6;
+  return pose;
+};
+
+describe('turning a joint', () => {
+  it('composes on the right: about the joint own axes, leaving every other joint alone', () => {
+    const quaternions = poseToQuaternions(bent());
+    const before = quaternions.slice();
+    const world = worldRotations(before);
+    const joint = jointIndex('left_elbow');
+    rotateLocal(quaternions, joint, 'x', 0.5);
+    const expected = multiply(before.subarray(joint * 4, joint * 4 + 4), axisAngleToQuaternion([0.5, 0, 0]));
+    expect(angleBetween(quaternions.subarray(joint * 4, joint * 4 + 4), expected)).toBeLessThan(1e-6);
+    // In the world that is a turn about the joint's own, posed x axis.
+    const after = worldRotations(quaternions);
+    const own = multiply(world.subarray(joint * 4, joint * 4 + 4), axisAngleToQuaternion([0.5, 0, 0]));
+    expect(angleBetween(after.subarray(joint * 4, joint * 4 + 4), own)).toBeLessThan(1e-6);
+    for (let other = 0; other < JOINT_COUNT; other++)
+      if (other !== joint)
+        expect(quaternions.slice(other * 4, other * 4 + 4)).toEqual(before.slice(other * 4, other * 4 + 4));
+  });
+
+  it('tells each change in phases and takes a cancelled one back exactly', () => {
+    const edit = new PoseEdit();
+    edit.load(bent());
+    const heard: string[] = [];
+    const poses: number[][] = [];
+    edit.listen((rotations, phase) => {
+      heard.push(phase);
+      poses.push(rotations);
+    });
+    edit.rotate(4, 'x', 0.3);
+    edit.rotate(4, 'x', 0.3);
+    edit.commit();
+    expect(heard).toEqual(['start', 'change', 'change', 'commit']);
+    expect(poses[3][12]).toBeCloseTo(0.6, 5);
+    edit.rotate(4, 'z', 1);
+    edit.cancel();
+    expect(heard.slice(4)).toEqual(['start', 'change', 'cancel']);
+    expect(poses[6]).toEqual(poses[3]);
+    edit.commit();
+    edit.cancel();
+    expect(heard).toHaveLength(7);
+    expect(poses[0][12]).toBeCloseTo(0, 6);
+  });
+
+  it('names joints in plain words', () => {
+    expect(jointLabel(jointIndex('left_elbow'))).toBe('Left elbow');
+    expect(jointLabel(jointIndex('right_foot'))).toBe('Right toes');
+    expect(jointLabel(0)).toBe('Hips (whole body)');
+  });
+});
+
+describe('standing on the floor', () => {
+  it('puts the rest pose at its own height', () => {
+    const [x, y, z] = standingRoot(poseToQuaternions(rest()));
+    expect([x, z]).toEqual([0, 0]);
+    expect(y).toBeCloseTo(REST_HEIGHT, 5);
+  });
+
+  it('puts the lowest point of any pose at 0', () => {
+    for (let seed = 0; seed < 30; seed++) {
+      const pose = rest().map((_, i) => 1.3 * Math.sin(seed * 12.9 + i * 7.7));
+      const quaternions = poseToQuaternions(pose);
+      const root = standingRoot(quaternions);
+      const joints = forwardKinematics(quaternions, root);
+      const rotations = worldRotations(quaternions);
+      const heights = SUPPORTS.map((s) => placePoint(s, joints, rotations)[1] - s.radius);
+      expect(Math.min(...heights)).toBeCloseTo(0, 5);
+    }
+  });
+
+  it('stands on the other foot when one leg is lifted', () => {
+    const pose = rest();
+    pose[jointIndex('left_hip') * 3] = -1.5;
+    expect(standingRoot(poseToQuaternions(pose))[1]).toBeCloseTo(REST_HEIGHT, 5);
+  });
+});
+
+describe('picking', () => {
+  const joints = forwardKinematics(poseToQuaternions(rest()), [0, REST_HEIGHT, 0]);
+  const rotations = worldRotations(poseToQuaternions(rest()));
+  const toMiddle = (a: string, b: string) => {
+    const [i, j] = [jointIndex(a) * 3, jointIndex(b) * 3];
+    const target = [0, 1, 2].map((k) => (joints[i + k] + joints[j + k]) / 2);
+    const origin = [0.4, 1.2, 4];
+    const d = target.map((c, k) => c - origin[k]);
+    const length = Math.hypot(...d);
+    return pickBody(
+      origin,
+      d.map((c) => c / length),
+      joints,
+      rotations,
+    );
+  };
+
+  it('selects the joint that turns the limb', () => {
+    expect(toMiddle('left_shoulder', 'left_elbow')).toBe(jointIndex('left_shoulder'));
+    expect(toMiddle('right_elbow', 'right_wrist')).toBe(jointIndex('right_elbow'));
+    expect(toMiddle('left_hip', 'left_knee')).toBe(jointIndex('left_hip'));
+    expect(toMiddle('right_knee', 'right_ankle')).toBe(jointIndex('right_knee'));
+    expect(pickBody([0, 3, 4], [0, 0, -1], joints, rotations)).toBeNull();
+  });
+
+  it('covers every part of the body with a joint that exists', () => {
+    for (const { joint, from } of CAPSULES) {
+      expect(joint).toBeGreaterThanOrEqual(0);
+      expect(PARENTS[from.joint]).toBeLessThan(JOINT_COUNT);
+    }
+  });
+
+  it('measures the distance to a capsule', () => {
+    expect(rayCapsule([0, 0, 5], [0, 0, -1], [-1, 0, 0], [1, 0, 0], 0.5)).toBeCloseTo(4.5, 6);
+    expect(rayCapsule([0, 2, 5], [0, 0, -1], [-1, 0, 0], [1, 0, 0], 0.5)).toBeUndefined();
+    expect(rayCapsule([0, 0, 5], [0, 0, 1], [-1, 0, 0], [1, 0, 0], 0.5)).toBeUndefined();
+    expect(rayCapsule([0, 0, 5], [0, 0, -1], [0, 0, 0], [0, 0, 0], 0.5)).toBeCloseTo(4.5, 6);
+  });
+});
+
+describe('heading', () => {
+  it('is the direction of the pelvis on the floor', () => {
+    for (const angle of [-3, -1, 0, 0.4, 2.5]) {
+      const pose = rest();
+      pose[1] = angle;
+      expect(headingOf(poseToQuaternions(pose))).toBeCloseTo(angle, 5);
+    }
+  });
+
+  it('is where the head points for someone lying on the belly', () => {
+    const pose = rest();
+    pose[0] = Math.PI / 2;
+    expect(headingOf(poseToQuaternions(pose))).toBeCloseTo(0, 5);
+  });
+});
