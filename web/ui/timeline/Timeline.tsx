@@ -16,7 +16,7 @@ export function Timeline() {
   const { state } = store;
   const box = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLCanvasElement>(null);
-  const frame = useRef(0);
+  const waiting = useRef(false);
 
   useEffect(() => {
     const element = box.current!;
@@ -59,10 +59,13 @@ export function Timeline() {
     };
   });
   useSignalEffect(() => {
-    const now = picture.value;
-    cancelAnimationFrame(frame.current);
-    frame.current = requestAnimationFrame(() => {
-      if (canvas.current) drawTimeline(canvas.current, now, Math.min(devicePixelRatio || 1, 2));
+    void picture.value;
+    if (waiting.current) return;
+    waiting.current = true;
+    // In the same turn as the elements move, so that poses never part from their stems.
+    queueMicrotask(() => {
+      waiting.current = false;
+      if (canvas.current) drawTimeline(canvas.current, picture.peek(), Math.min(devicePixelRatio || 1, 2));
     });
   });
 
