@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rig import SPEC, Arm, Body, Foot, Solved, settle, solve
+from rig import SPEC, Arm, Body, Foot, Solved, mirrored, settle, solve
 
 OUT = Path(__file__).resolve().parents[2] / "public/library/poses.json"
 
@@ -107,10 +107,10 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
         left=Foot(0.13, 0.0, 14, heel=16), right=Foot(-0.14, 0.02, -16),
         h=0.84, roll=-7, side=-9, turn=-14, twist=-18, tilt=10, bend=10, look=14, look_up=-3, head_tilt=5,
         la=Arm((-0.12, -0.03, 0.33), elbow=(1, -0.35, 0), roll=-20, flex=10), ra=Arm((-0.12, -0.23, 0.27), elbow=(1, -0.3, -0.2), roll=-10, flex=15)), 0.2)
-    add("Hustle hip", "Disco", Body(
+    add("Hustle hip", "Disco", mirrored(Body(
         left=Foot(0.04, 0.2, 26, heel=6), right=Foot(-0.1, -0.08, -32),
         h=0.915, roll=-11, side=-15, turn=26, twist=-34, look=-24, look_up=4, head_tilt=-8, bend=-4,
-        la=Arm((0.22, 0.24, 0.2), elbow=(1, -0.7, -0.3), roll=40, flex=-30), ra=Arm((-0.01, -0.4, 0.08), elbow=(1, 0.1, -0.4), flex=35, dev=-20)), 0.12)
+        la=Arm((0.22, 0.24, 0.2), elbow=(1, -0.7, -0.3), roll=40, flex=-30), ra=Arm((-0.01, -0.4, 0.08), elbow=(1, 0.1, -0.4), flex=35, dev=-20))), 0.88)
 
     # -- Latin
     add("Cuban hip", "Latin", Body(
@@ -135,16 +135,16 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
         la=Arm((0.1, 0.44, 0.13), elbow=(1, 0.3, -0.2), roll=-30, flex=30), ra=Arm((-0.1, -0.28, 0.27), elbow=(1, -0.2, 0.1), roll=-20, flex=30)), 0.92)
 
     # -- Ballet and contemporary
-    add("Arabesque", "Ballet", Body(
-        left=Foot(0.06, 0.0, 30), right=Foot(-0.14, -0.86, -50, y=0.98, pitch=112, knee=(-1, -0.6, -0.1)),
+    add("Arabesque", "Ballet", mirrored(Body(
+        left=Foot(0.06, 0.0, 30), right=Foot(-0.14, -0.86, -50, y=0.98, point=52, knee=(-1, -0.6, -0.1)),
         h=0.945, turn=-14, tilt=36, roll=-6, bend=-46, side=4, look=20, look_up=8,
-        la=Arm((0.46, 0.1, 0.14), elbow=SIDE_ELBOW, roll=10, flex=-5), ra=Arm((0.08, 0.26, 0.44), elbow=(0.9, -0.6, -0.1), flex=-6)), 1.0)
+        la=Arm((0.46, 0.1, 0.14), elbow=SIDE_ELBOW, roll=10, flex=-5), ra=Arm((0.08, 0.26, 0.44), elbow=(0.9, -0.6, -0.1), flex=-6))), 0)
     add("Passe", "Ballet", Body(
-        left=Foot(0.06, 0.1, 50, y=0.58, pitch=72, roll=0, knee=(1, 0.2, 0.4)), right=Foot(-0.05, 0.0, -34, heel=42),
+        left=Foot(0.06, 0.1, 50, y=0.58, point=52, knee=(1, 0.2, 0.4)), right=Foot(-0.05, 0.0, -34, heel=42),
         h=0.985, roll=5, side=1, bend=-3, look=24, look_up=8, head_tilt=-4,
         la=Arm((-0.03, 0.46, 0.16), elbow=(1, 0.2, 0.2), roll=-10, flex=18), ra=Arm((0.42, -0.04, 0.22), elbow=(0.2, -0.3, -1), flex=12)), 0.0)
     add("Attitude", "Ballet", Body(
-        left=Foot(0.34, -0.42, 40, y=0.72, pitch=100, knee=(1, 0.25, -0.1)), right=Foot(-0.04, 0.0, -30),
+        left=Foot(0.34, -0.42, 40, y=0.72, point=50, knee=(1, 0.25, -0.1)), right=Foot(-0.04, 0.0, -30),
         h=0.93, turn=12, tilt=14, roll=10, bend=-24, twist=6, side=-10, look=-30, look_up=12,
         la=Arm((0.42, 0.02, 0.2), elbow=(0.1, -0.3, -1), flex=10), ra=Arm((0.05, 0.43, 0.13), elbow=(1, 0.2, 0.2), flex=18)), 0.0)
     add("Deep fourth", "Ballet", Body(
@@ -164,7 +164,7 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
         h=0.86, tilt=-5, bend=-26, roll=4, side=8, twist=20, turn=-12, look=24, look_up=42,
         la=Arm((0.42, 0.2, -0.2), elbow=(0, -0.8, -0.7), roll=60, flex=-20), ra=Arm((0.4, -0.2, -0.24), elbow=(0, -0.6, -0.9), roll=60, flex=-20)), 0.45)
     add("Tilt", "Contemporary", Body(
-        left=Foot(0.85, 0.14, 60, y=1.08, pitch=34, roll=-10, knee=(-0.3, 0.9, 0.5)), right=Foot(-0.04, 0, -30),
+        left=Foot(0.85, 0.14, 60, y=1.08, point=50, knee=(-0.3, 0.9, 0.5)), right=Foot(-0.04, 0, -30),
         h=0.925, roll=32, side=-8, turn=-6, twist=4, bend=2, look=-30, look_up=-6, head_tilt=-14,
         la=Arm((0.18, 0.48, 0.04), elbow=(1, -0.2, -0.2), flex=-6), ra=Arm((0.42, -0.28, 0.08), elbow=(0.3, 0.1, -1), flex=-10)), 0.0)
     add("Kneeling reach", "Contemporary", Body(
@@ -188,15 +188,15 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
 
     # -- Jumps
     add("Star jump", "Jumps", Body(
-        left=Foot(0.54, -0.02, 40, y=0.56, pitch=52), right=Foot(-0.5, 0.04, -40, y=0.5, pitch=52),
+        left=Foot(0.54, -0.02, 40, y=0.56, point=45), right=Foot(-0.5, 0.04, -40, y=0.5, point=45),
         h=1.2, roll=3, side=-4, bend=-10, turn=4, look=0, look_up=16,
         la=Arm((0.36, 0.36, 0.03), elbow=(0.8, -0.8, -0.4), roll=20, flex=-10), ra=Arm((0.4, 0.31, 0.02), elbow=(0.8, -0.8, -0.4), roll=20, flex=-10)), None)
     add("Leap", "Jumps", Body(
-        left=Foot(0.05, 0.72, 6, y=0.84, pitch=44, knee=(0.1, 1, 0.2)), right=Foot(-0.12, -0.72, -24, y=0.76, pitch=128, knee=(-0.4, -1, 0)),
+        left=Foot(0.05, 0.72, 6, y=0.84, point=50, knee=(0.1, 1, 0.2)), right=Foot(-0.12, -0.72, -24, y=0.76, point=52, knee=(-0.4, -1, 0)),
         h=1.15, tilt=6, bend=-18, turn=0, twist=18, side=-2, look=6, look_up=10,
         la=Arm((0.44, 0.18, -0.1), elbow=SIDE_ELBOW, flex=-6), ra=Arm((0.06, 0.18, 0.44), elbow=FRONT_ELBOW, flex=-6)), None)
     add("Tuck kick", "Jumps", Body(
-        left=Foot(0.12, 0.6, 4, y=0.86, pitch=30, knee=(0.1, 1, 0.3)), right=Foot(-0.12, -0.22, -10, y=0.62, pitch=70, knee=(-0.2, 0, 1)),
+        left=Foot(0.12, 0.6, 4, y=0.86, point=38, knee=(0.1, 1, 0.3)), right=Foot(-0.12, -0.22, -10, y=0.62, point=42, knee=(-0.2, 0, 1)),
         h=1.12, tilt=-6, bend=22, twist=20, turn=-12, look=12, look_up=-4,
         la=Arm((0.3, -0.02, -0.28), elbow=(0.2, 0, -1), flex=-6), ra=Arm((0.1, -0.04, 0.44), elbow=(0.8, -0.7, 0), flex=8)), None)
 

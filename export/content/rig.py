@@ -96,7 +96,8 @@ class Foot:
     """Where a foot is. On the floor: `x`, `z` under the ankle when flat, `yaw` (turn-out is + for left, - for right),
     `heel` = heel raised by so many degrees over the ball of the foot. In the air: `y` = ankle height, `pitch` = toes
     down. `knee` = direction of the knee in the world, default: over the toes. `toes` = how far the toes bend up,
-    default: so that they lie on the floor under a raised heel."""
+    default: so that they lie on the floor under a raised heel. `point` = pointed by so many degrees against the shin
+    (a lifted foot; replaces yaw, pitch and roll)."""
 
     x: float
     z: float
@@ -107,6 +108,7 @@ class Foot:
     roll: float = 0
     knee: tuple[float, float, float] | None = None
     toes: float | None = None
+    point: float | None = None
 
     @property
     def planted(self) -> bool:
@@ -285,11 +287,23 @@ def _solve_leg(body, side, local, points, world, peel, warnings) -> None:
     hip_world = _frame(reach, knee_way) @ _frame(bone, np.array([0, 0, 1.0])).T
     local[hip] = world[0].T @ hip_world
     local[knee] = rx(angle)
-    local[ankle] = (hip_world @ local[knee]).T @ foot_rotation
+    local[ankle] = (hip_world @ local[knee]).T @ foot_rotation if foot.point is None else rx(foot.point)
+    if not foot.planted:
+        # only the floor can press an ankle further than muscles do
+        local[ankle] = _soften(local[ankle], 45, 20)
     if foot.toes is not None:
         local[toe] = rx(-foot.toes)
     elif foot.planted:
         local[toe] = rx(-TOE_SHARE * (foot.heel + extra))
+
+
+def _soften(matrix: np.ndarray, free: float, extra: float) -> np.ndarray:
+    """A rotation whose angle is left alone up to `free` degrees and then approaches free + extra smoothly."""
+    vector = axis_angle(matrix)
+    angle = float(np.degrees(np.linalg.norm(vector)))
+    if angle <= free:
+        return matrix
+    return about(vector, free + extra * (1 - np.exp((free - angle) / extra)))
 
 
 def _solve_arm(body, side, local, points, world, warnings) -> None:
@@ -326,6 +340,17 @@ def _solve_arm(body, side, local, points, world, warnings) -> None:
     # supination turns the palm up: about the forearm, shared by forearm and wrist as in a real arm
     local[elbow] = ry(-sign * angle) @ about(b, -0.6 * arm.roll * 1.0)
     local[wrist] = about(b, -0.4 * arm.roll) @ rz(-sign * arm.flex) @ ry(sign * arm.dev)
+
+
+def mirrored(body: Body) -> Body:
+    """The left-right mirror image of a pose."""
+
+    def foot(f: Foot) -> Foot:
+        knee = None if f.knee is None else (-f.knee[0], f.knee[1], f.knee[2])
+        return replace(f, x=-f.x, yaw=-f.yaw, roll=-f.roll, knee=knee)
+
+    signs = {name: -getattr(body, name) for name in ("x", "turn", "roll", "twist", "side", "look", "head_tilt")}
+    return replace(body, left=foot(body.right), right=foot(body.left), la=body.ra, ra=body.la, **signs)
 
 
 def balance(body: Body, weight: float, rounds: int = 14, peel: float = 0.0) -> Body:
