@@ -1,6 +1,6 @@
 /** Where a dance's body is relative to its pelvis, and how high the pelvis must be for nothing to be below the floor. */
 import { rotateVector } from './rotation';
-import { forwardKinematics, JOINT_COUNT, jointIndex, worldRotations } from './skeleton';
+import { forwardKinematics, JOINT_COUNT, jointIndex } from './skeleton';
 import { spec } from './spec';
 import type { Motion } from './types';
 
@@ -50,8 +50,7 @@ const ORIGIN = [0, 0, 0];
 
 /** Soles and floor height of one frame, written into a track. */
 export function trackFrame(quaternions: Float32Array, track: BodyTrack, index: number): void {
-  forwardKinematics(quaternions, ORIGIN, joints);
-  worldRotations(quaternions, turns);
+  forwardKinematics(quaternions, ORIGIN, joints, turns);
   let ground = 0;
   SOLES.forEach(({ foot, heel }, sole) => {
     const { ankle, toe } = FEET[foot];

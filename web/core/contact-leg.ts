@@ -1,6 +1,6 @@
 /** Two-bone inverse kinematics of a leg: the foot is moved, its direction in the world is kept. */
 import { conjugate, multiply, rotateVector, type Numbers } from './rotation';
-import { forwardKinematics, JOINT_COUNT, PARENTS, worldRotations } from './skeleton';
+import { forwardKinematics, JOINT_COUNT, PARENTS } from './skeleton';
 import { spec } from './spec';
 
 const LEGS = [spec.skeleton.feet.left, spec.skeleton.feet.right].map(({ ankle }) => ({
@@ -22,8 +22,7 @@ const turns = new Float32Array(JOINT_COUNT * 4);
  */
 export function moveFoot(quaternions: Float32Array, foot: 0 | 1, offset: Numbers): void {
   const { hip, knee, ankle } = LEGS[foot];
-  forwardKinematics(quaternions, [0, 0, 0], joints);
-  worldRotations(quaternions, turns);
+  forwardKinematics(quaternions, [0, 0, 0], joints, turns);
   const point = (joint: number) => [joints[joint * 3], joints[joint * 3 + 1], joints[joint * 3 + 2]];
   const turn = (joint: number) => turns.slice(joint * 4, joint * 4 + 4);
   const [hipAt, kneeAt, ankleAt] = [point(hip), point(knee), point(ankle)];

@@ -1,5 +1,5 @@
 /** Planted feet: when each ball of a foot stands, and how far the leg must move it so that it does not slide. */
-import { hermite, smoothstep } from './interpolate';
+import { gaussianSmooth, hermite, smoothstep } from './interpolate';
 import { spec } from './spec';
 
 const { toeHeight } = spec.skeleton;
@@ -44,7 +44,7 @@ export function findPlants(path: Float64Array, fps: number, planted: boolean): P
     return path[t * 3 + 1] - toeHeight < limit.height && speed < limit.speed;
   };
   const close = (to: number) => {
-    if (from >= 0 && (to - from >= SHORTEST || from === 0 || to === frames)) plants.push({ from, to });
+    if (from >= 0 && to > from && (to - from >= SHORTEST || from === 0 || to === frames)) plants.push({ from, to });
     from = -1;
   };
   for (let t = 0; t < frames; t++) {
@@ -100,6 +100,38 @@ export function footOffsets(
     bridge(offsets, edge, { at, offset: border, slope: [0, 0, 0] });
   }
   return offsets;
+}
+
+/** A foot that travels is lifted clear of the floor: from `slow` on, fully from `fast` on (m/s), to `height` metres. */
+const SWING = { slow: 0.25, fast: 0.6, height: 0.065 };
+
+/**
+ * Lifts a foot that would drag over the floor while the other one stands, adding to its offsets in place: a step instead of a slide.
+ * @param otherPlants when the other foot stands
+ */
+export function liftSwing(
+  path: Float64Array,
+  offsets: Float64Array,
+  plants: readonly Plant[],
+  otherPlants: readonly Plant[],
+  fps: number,
+): void {
+  const frames = path.length / 3;
+  const wanted = new Float64Array(frames);
+  const stands = (list: readonly Plant[], t: number) => list.some((plant) => t >= plant.from && t < plant.to);
+  for (let t = 0; t < frames; t++) {
+    if (stands(plants, t) || !stands(otherPlants, t)) continue;
+    const a = Math.max(0, t - 1) * 3;
+    const b = Math.min(frames - 1, t + 1) * 3;
+    const dx = path[b] + offsets[b] - path[a] - offsets[a];
+    const dz = path[b + 2] + offsets[b + 2] - path[a + 2] - offsets[a + 2];
+    const speed = (Math.hypot(dx, dz) * fps * 3) / Math.max(1, b - a);
+    const height = path[t * 3 + 1] + offsets[t * 3 + 1] - toeHeight;
+    const goal = SWING.height * smoothstep((speed - SWING.slow) / (SWING.fast - SWING.slow));
+    wanted[t] = Math.max(0, goal - height);
+  }
+  const lift = gaussianSmooth(wanted, 1, 1.2);
+  for (let t = 0; t < frames; t++) offsets[t * 3 + 1] += lift[t];
 }
 
 /** The point a foot stands on at a frame of its plant: x, z. It moves only between several keys of one plant. */

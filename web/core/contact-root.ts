@@ -10,7 +10,7 @@ const SLIDE = 0.25;
 /** Rounds of weighing the soles by how still the last solution keeps them. */
 const ROUNDS = 4;
 /** Resistance to change of velocity, and pull to the network's own velocity, against a full support of 1. */
-const INERTIA = 1.5;
+const INERTIA = 1;
 const TRUST = 0.02;
 
 /** Pelvis velocity at a border of a stretch, metres a frame. */

@@ -6,7 +6,7 @@
 import { bodyTrack, SOLES, type BodyTrack } from './contact-body';
 import { liftEnvelope, pelvisHeights } from './contact-floor';
 import { moveFoot } from './contact-leg';
-import { findPlants, footOffsets, type FootBorder } from './contact-lock';
+import { findPlants, footOffsets, liftSwing, type FootBorder } from './contact-lock';
 import { pelvisVelocities, type Velocity } from './contact-root';
 import { bump, smoothstep } from './interpolate';
 import { copyFrames } from './motion';
@@ -83,9 +83,7 @@ export function cleanContacts(
   for (let i = 0; i < count; i++) pelvis.set([way.path[i * 2], y[i], way.path[i * 2 + 1]], i * 3);
 
   const keys = options.keys.filter((key) => key >= from && key < high).map((key) => key - from);
-  const feet = [0, 1].map((foot) =>
-    plantFoot(work, track, at, pelvis, foot as 0 | 1, keys, options.keyStrength, state, end),
-  );
+  const feetAt = plantFeet({ work, track, at, pelvis, keys, keyStrength: options.keyStrength, state, end });
   raiseAfterLegs(work, pelvis);
   for (let i = 0; i < count * 3; i++) work.root[i] = pelvis[i];
 
@@ -96,7 +94,7 @@ export function cleanContacts(
     height: done < count ? pelvis[done * 3 + 1] : pelvis[(count - 1) * 3 + 1],
     velocity: way.velocityAt(done - 1),
     drift: way.drift,
-    feet: feet.map((border) => border(done)),
+    feet: feetAt(done),
   };
 }
 
@@ -176,47 +174,73 @@ function raise(heights: Float64Array, ground: Float64Array): void {
   for (let i = 0; i < heights.length; i++) heights[i] += lift[i];
 }
 
-/** Plants one foot by moving its leg; returns what the next stretch must know at a frame. */
-function plantFoot(
-  work: Motion,
-  track: BodyTrack,
-  at: number,
-  pelvis: Float64Array,
-  foot: 0 | 1,
-  keys: number[],
-  keyStrength: number,
-  state?: ContactState,
-  end?: ContactState,
-): (frame: number) => FootBorder {
-  const sole = SOLES.findIndex((point) => point.foot === foot && !point.heel);
-  const path = new Float64Array(work.frames * 3);
-  for (let i = 0; i < work.frames; i++) {
-    const s = ((at + i) * SOLES.length + sole) * 3;
-    for (let k = 0; k < 3; k++) path[i * 3 + k] = pelvis[i * 3 + k] + track.soles[s + k];
-  }
-  const border = state?.feet[foot] ?? { offset: [0, 0, 0] };
-  const plants = findPlants(path, work.fps, border.planted !== undefined);
+/** What the planting of feet needs to know about a stretch. */
+interface Stretch {
+  work: Motion;
+  track: BodyTrack;
+  /** Where the stretch begins in the track. */
+  at: number;
+  /** Pelvis positions, frames x 3. */
+  pelvis: Float64Array;
+  /** Frames of exact keys inside the stretch. */
+  keys: number[];
+  keyStrength: number;
+  state?: ContactState;
+  end?: ContactState;
+}
+
+/** Plants both feet by moving the legs; returns what the next stretch must know at a frame. */
+function plantFeet({
+  work,
+  track,
+  at,
+  pelvis,
+  keys,
+  keyStrength,
+  state,
+  end,
+}: Stretch): (frame: number) => FootBorder[] {
   const exact = keyStrength > 0 ? keys : [];
-  const offsets = footOffsets(path, plants, exact, border, end?.feet[foot]);
-  for (const key of exact) {
-    for (let i = Math.max(0, key - KEY_REACH); i < Math.min(work.frames, key + KEY_REACH); i++) {
-      const keep = 1 - keyStrength * bump((i - key) / KEY_REACH);
-      for (let k = 0; k < 3; k++) offsets[i * 3 + k] *= keep;
+  const paths = [0, 1].map((foot) => {
+    const sole = SOLES.findIndex((point) => point.foot === foot && !point.heel);
+    const path = new Float64Array(work.frames * 3);
+    for (let i = 0; i < work.frames; i++) {
+      const s = ((at + i) * SOLES.length + sole) * 3;
+      for (let k = 0; k < 3; k++) path[i * 3 + k] = pelvis[i * 3 + k] + track.soles[s + k];
     }
-  }
-  for (let i = 0; i < work.frames; i++) {
-    const offset = offsets.subarray(i * 3, i * 3 + 3);
-    if (Math.hypot(offset[0], offset[1], offset[2]) > 1e-5) {
+    return path;
+  });
+  const borders = [0, 1].map((foot): FootBorder => state?.feet[foot] ?? { offset: [0, 0, 0] });
+  const plants = paths.map((path, foot) => findPlants(path, work.fps, borders[foot].planted !== undefined));
+  const offsets = paths.map((path, foot) => {
+    const moved = footOffsets(path, plants[foot], exact, borders[foot], end?.feet[foot]);
+    liftSwing(path, moved, plants[foot], plants[1 - foot], work.fps);
+    for (const key of exact) keepKey(moved, key, keyStrength);
+    return moved;
+  });
+  for (const foot of [0, 1] as const) {
+    for (let i = 0; i < work.frames; i++) {
+      const offset = offsets[foot].subarray(i * 3, i * 3 + 3);
+      if (Math.hypot(offset[0], offset[1], offset[2]) < 1e-5) continue;
       moveFoot(work.quaternions.subarray(i * POSE, i * POSE + POSE), foot, offset);
     }
   }
-  return (frame) => {
-    const last = Math.min(frame, work.frames) - 1;
-    const standing = plants.some((plant) => plant.from <= last && plant.to > last + 1);
-    const offset: FootBorder['offset'] = [offsets[last * 3], offsets[last * 3 + 1], offsets[last * 3 + 2]];
-    const point = offset.map((value, k) => value + path[last * 3 + k]) as FootBorder['offset'];
-    return standing ? { planted: point, offset } : { offset };
-  };
+  return (frame) =>
+    [0, 1].map((foot) => {
+      const last = Math.min(frame, work.frames) - 1;
+      const standing = plants[foot].some((plant) => plant.from <= last && plant.to > last + 1);
+      const offset = Array.from(offsets[foot].subarray(last * 3, last * 3 + 3)) as FootBorder['offset'];
+      const point = offset.map((value, k) => value + paths[foot][last * 3 + k]) as FootBorder['offset'];
+      return standing ? { planted: point, offset } : { offset };
+    });
+}
+
+/** Fades the legs' offsets out around a key, so that its pose is left alone. */
+function keepKey(offsets: Float64Array, key: number, keyStrength: number): void {
+  for (let i = Math.max(0, key - KEY_REACH); i < Math.min(offsets.length / 3, key + KEY_REACH); i++) {
+    const keep = 1 - keyStrength * bump((i - key) / KEY_REACH);
+    for (let k = 0; k < 3; k++) offsets[i * 3 + k] *= keep;
+  }
 }
 
 /** The last word on the floor: legs that were moved may have changed what is lowest. */

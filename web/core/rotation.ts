@@ -12,7 +12,7 @@ const JOINTS_IN_POSE = 24;
 /** Same rotation, unit length, with the sign that makes w >= 0 (at w = 0 the first non-zero of x, y, z is positive). */
 export function canonicalQuaternion(q: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
   const [x, y, z, w] = [q[0], q[1], q[2], q[3]];
-  const length = Math.hypot(x, y, z, w);
+  const length = Math.sqrt(x * x + y * y + z * z + w * w);
   if (!(length > 1e-12)) return set(out, 0, 0, 0, 1);
   const negative = w < 0 || (w === 0 && (x < 0 || (x === 0 && (y < 0 || (y === 0 && z < 0)))));
   const scale = (negative ? -1 : 1) / length;
@@ -65,31 +65,25 @@ export function quaternionToSixD(q: Numbers, out: Writable = [0, 0, 0, 0, 0, 0])
  * Columns that are zero, parallel or not finite still give a rotation, so that a bad network output never becomes NaN.
  */
 export function sixDToQuaternion(sixD: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
-  const a = unit([sixD[0], sixD[1], sixD[2]], [1, 0, 0]);
-  const along = a[0] * sixD[3] + a[1] * sixD[4] + a[2] * sixD[5];
-  const b = unit(
-    [sixD[3] - along * a[0], sixD[4] - along * a[1], sixD[5] - along * a[2]],
-    // Any direction across `a` will do: start from the axis that `a` is furthest from.
-    across(a),
-  );
-  const c = cross(a, b);
-  return matrixToQuaternion([a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2]], out);
+  let [ax, ay, az] = [sixD[0], sixD[1], sixD[2]];
+  let length = Math.sqrt(ax * ax + ay * ay + az * az);
+  if (usable(length)) [ax, ay, az] = [ax / length, ay / length, az / length];
+  else [ax, ay, az] = [1, 0, 0];
+  const along = ax * sixD[3] + ay * sixD[4] + az * sixD[5];
+  let [bx, by, bz] = [sixD[3] - along * ax, sixD[4] - along * ay, sixD[5] - along * az];
+  length = Math.sqrt(bx * bx + by * by + bz * bz);
+  if (!usable(length)) {
+    // Any direction across `a` will do: cross it with the axis that it is not near to.
+    [bx, by, bz] = Math.abs(ay) < 0.9 ? [az, 0, -ax] : [-ay, ax, 0];
+    length = Math.sqrt(bx * bx + by * by + bz * bz);
+  }
+  [bx, by, bz] = [bx / length, by / length, bz / length];
+  const [cx, cy, cz] = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
+  return matrixToQuaternion([ax, bx, cx, ay, by, cy, az, bz, cz], out);
 }
 
-function unit(v: number[], fallback: number[]): number[] {
-  const length = Math.hypot(v[0], v[1], v[2]);
-  return length > 1e-8 && Number.isFinite(length) ? [v[0] / length, v[1] / length, v[2] / length] : fallback;
-}
-
-function cross(a: number[], b: number[]): number[] {
-  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-}
-
-function across(a: number[]): number[] {
-  const axis = Math.abs(a[1]) < 0.9 ? [0, 1, 0] : [0, 0, 1];
-  const side = cross(axis, a);
-  const length = Math.hypot(side[0], side[1], side[2]);
-  return cross(a, [side[0] / length, side[1] / length, side[2] / length]);
+function usable(length: number): boolean {
+  return length > 1e-8 && length < Infinity;
 }
 
 /** Row-major 3 x 3 rotation matrix to a canonical quaternion, dividing by the largest component (Shepperd 1978). */
@@ -149,8 +143,11 @@ export function slerp(a: Numbers, b: Numbers, t: number, out: Writable = [0, 0, 
     to = Math.sin(to * angle) / Math.sin(angle);
   }
   if (dot < 0) to = -to;
-  const [x, y, z, w] = [0, 1, 2, 3].map((i) => from * a[i] + to * b[i]);
-  const scale = 1 / (Math.hypot(x, y, z, w) || 1);
+  const x = from * a[0] + to * b[0];
+  const y = from * a[1] + to * b[1];
+  const z = from * a[2] + to * b[2];
+  const w = from * a[3] + to * b[3];
+  const scale = 1 / (Math.sqrt(x * x + y * y + z * z + w * w) || 1);
   return set(out, x * scale, y * scale, z * scale, w * scale);
 }
 

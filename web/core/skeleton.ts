@@ -1,5 +1,5 @@
 /** The skeleton of spec.json: 24 SMPL joints, T-pose rest, metres, Y up, facing +Z, left = +X. */
-import { multiply, rotateVector, type Numbers } from './rotation';
+import type { Numbers } from './rotation';
 import { spec } from './spec';
 
 export const JOINTS: readonly string[] = spec.skeleton.joints;
@@ -35,15 +35,25 @@ export function worldRotations(
   quaternions: Numbers,
   out: Float32Array = new Float32Array(JOINT_COUNT * 4),
 ): Float32Array {
-  const parent = [0, 0, 0, 1];
-  const local = [0, 0, 0, 1];
-  for (let joint = 0; joint < JOINT_COUNT; joint++) {
-    for (let i = 0; i < 4; i++) local[i] = quaternions[joint * 4 + i];
-    if (PARENTS[joint] >= 0) {
-      for (let i = 0; i < 4; i++) parent[i] = out[PARENTS[joint] * 4 + i];
-      multiply(parent, local, local);
+  // Written out without small arrays: this runs for every frame of a dance, several times.
+  for (let joint = 0, i = 0; joint < JOINT_COUNT; joint++, i += 4) {
+    const x = quaternions[i];
+    const y = quaternions[i + 1];
+    const z = quaternions[i + 2];
+    const w = quaternions[i + 3];
+    const p = PARENTS[joint] * 4;
+    if (p < 0) {
+      out[i] = x;
+      out[i + 1] = y;
+      out[i + 2] = z;
+      out[i + 3] = w;
+      continue;
     }
-    for (let i = 0; i < 4; i++) out[joint * 4 + i] = local[i];
+    const [px, py, pz, pw] = [out[p], out[p + 1], out[p + 2], out[p + 3]];
+    out[i] = pw * x + px * w + py * z - pz * y;
+    out[i + 1] = pw * y - px * z + py * w + pz * x;
+    out[i + 2] = pw * z + px * y - py * x + pz * w;
+    out[i + 3] = pw * w - px * x - py * y - pz * z;
   }
   return out;
 }
@@ -54,22 +64,29 @@ const scratch = new Float32Array(JOINT_COUNT * 4);
  * Forward kinematics.
  * @param quaternions 24 x 4 local rotations; joint 0 is the world orientation
  * @param root pelvis position, metres
+ * @param turns receives the world rotations, 24 x 4, where they are wanted too
  * @returns 24 x 3 world joint positions, metres
  */
 export function forwardKinematics(
   quaternions: Numbers,
   root: Numbers,
   out: Float32Array = new Float32Array(JOINT_COUNT * 3),
+  turns: Float32Array = scratch,
 ): Float32Array {
-  worldRotations(quaternions, scratch);
+  worldRotations(quaternions, turns);
   for (let i = 0; i < 3; i++) out[i] = root[i];
-  const q = [0, 0, 0, 1];
-  const offset = [0, 0, 0];
   for (let joint = 1; joint < JOINT_COUNT; joint++) {
-    const parent = PARENTS[joint];
-    for (let i = 0; i < 4; i++) q[i] = scratch[parent * 4 + i];
-    rotateVector(q, OFFSETS[joint], offset);
-    for (let i = 0; i < 3; i++) out[joint * 3 + i] = out[parent * 3 + i] + offset[i];
+    const q = PARENTS[joint] * 4;
+    const [x, y, z, w] = [turns[q], turns[q + 1], turns[q + 2], turns[q + 3]];
+    const [vx, vy, vz] = OFFSETS[joint];
+    const tx = 2 * (y * vz - z * vy);
+    const ty = 2 * (z * vx - x * vz);
+    const tz = 2 * (x * vy - y * vx);
+    const from = PARENTS[joint] * 3;
+    const to = joint * 3;
+    out[to] = out[from] + vx + w * tx + y * tz - z * ty;
+    out[to + 1] = out[from + 1] + vy + w * ty + z * tx - x * tz;
+    out[to + 2] = out[from + 2] + vz + w * tz + x * ty - y * tx;
   }
   return out;
 }

@@ -24,6 +24,7 @@ export async function openSession(ort: OrtModule, backend: Backend, weights: Uin
     graphOptimizationLevel: 'all',
     // Windows differ in length: planning memory for one pattern only costs time.
     enableMemPattern: false,
+    logSeverityLevel: 3,
   });
   let lost: string | undefined;
   if (backend === 'webgpu') void watchDevice(ort, (reason) => (lost = reason));
