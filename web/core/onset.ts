@@ -42,6 +42,8 @@ const LOW_HERTZ = 200;
 const MIDDLE_HERTZ = 2000;
 /** Mel power that counts as silence (-80 dB from a loud frame). */
 const POWER_FLOOR = 3e-5;
+/** The same for the level: digital silence is far below the quietest intro. */
+const LEVEL_FLOOR = 1e-10;
 const SILENT_DECIBELS = 10 * Math.log10(POWER_FLOOR);
 
 /** Flux of successive spectra. */
@@ -96,7 +98,7 @@ export class FluxMeter {
     out[1] /= this.lowBands;
     out[2] /= this.middleBands - this.lowBands;
     out[3] /= bands - this.middleBands;
-    out[4] = 10 * Math.log10(Math.max(POWER_FLOOR, sum / bands));
+    out[4] = 10 * Math.log10(Math.max(LEVEL_FLOOR, sum / bands));
     return out;
   }
 }
