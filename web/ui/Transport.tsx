@@ -84,6 +84,7 @@ export function Transport() {
         max={1}
         step={0.01}
         value={muted.value ? 0 : volume.value}
+        style={{ '--fill': `${Math.round((muted.value ? 0 : volume.value) * 100)}%` }}
         aria-label="Volume"
         onInput={(event) => store.setVolume(Number(event.currentTarget.value))}
       />

@@ -1,5 +1,6 @@
 /** Mouse, wheel and touch on the timeline's surface. */
 import type { Store } from '../../app/store';
+import { nearestBeat } from '../../app/snapping';
 import { LANES } from './geometry';
 import { timeAtX } from './surface';
 
@@ -50,7 +51,8 @@ export function bindGestures(element: HTMLElement, store: Store): () => void {
       store.scrollBy((before?.x ?? event.clientX) - event.clientX);
       touches.set(event.pointerId, { x: event.clientX, y: event.clientY });
     } else if (press.lane === 'ruler') {
-      const [a, b] = [timeAtX(store, press.x), timeAtX(store, event.clientX)];
+      const grid = event.altKey ? null : store.state.grid.value;
+      const [a, b] = [press.x, event.clientX].map((x) => nearestBeat(grid, timeAtX(store, x)));
       store.setLoop({ start: Math.min(a, b), end: Math.max(a, b) });
     } else if (press.y - element.getBoundingClientRect().top < LANES.keys.top) {
       store.seek(timeAtX(store, event.clientX));
