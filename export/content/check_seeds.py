@@ -10,47 +10,33 @@ import json
 from pathlib import Path
 
 import numpy as np
+import torch
 
-from clips import interpolate_loop
-from rig import SPEC, TOE_HEIGHT, about, forward
+from choreography import choreographies
+from clips import ClipSolver, interpolate_loop
+from rig import JOINTS, TOE_HEIGHT, spec
+from rotation import axis_angle_to_quaternion, quaternion_to_matrix
+from skeleton import forward_kinematics
 
 SEEDS = Path(__file__).resolve().parents[2] / "public/library/seeds.json"
 
 
-def matrices(pose: np.ndarray) -> np.ndarray:
-    """72 axis-angle numbers -> 24 matrices."""
-    out = []
-    for vector in pose.reshape(24, 3):
-        angle = np.linalg.norm(vector)
-        out.append(np.eye(3) if angle < 1e-9 else about(vector, np.degrees(angle)))
-    return np.array(out)
-
-
-def quaternions(pose: np.ndarray) -> np.ndarray:
-    """72 axis-angle numbers -> 24 x 4."""
-    v = pose.reshape(24, 3)
-    angle = np.linalg.norm(v, axis=1, keepdims=True)
-    return np.concatenate([v * np.where(angle < 1e-9, 0.5, np.sin(angle / 2) / np.maximum(angle, 1e-9)), np.cos(angle / 2)], 1)
+def quaternions(poses: list[list[float]]) -> np.ndarray:
+    """Poses x 24 x 4 from poses of 72 axis-angle numbers, each joint with the sign of the pose before."""
+    quats = axis_angle_to_quaternion(torch.tensor(poses, dtype=torch.float64).view(-1, spec.JOINT_COUNT, 3)).numpy()
+    for i in range(1, len(quats)):
+        quats[i] *= np.where((quats[i] * quats[i - 1]).sum(1, keepdims=True) < 0, -1, 1)
+    return quats
 
 
 def play(clip: dict, tempo: float, fps: int) -> tuple[np.ndarray, np.ndarray]:
     """World joint positions (frames x 24 x 3) and beats of one loop, joined as web/core/seed.ts joins them."""
-    quats = np.array([quaternions(np.array(p)) for p in clip["poses"]])
-    for i in range(1, len(quats)):
-        quats[i] *= np.where((quats[i] * quats[i - 1]).sum(1, keepdims=True) < 0, -1, 1)
-    root = np.array(clip["root"])
-    frames = int(round(clip["beats"] * 60 / tempo * fps))
-    points, beats = [], []
-    for f in range(frames):
-        beat = f / fps * tempo / 60
-        q = interpolate_loop(quats, beat / clip["beats"])
-        q = q / np.linalg.norm(q, axis=1, keepdims=True)
-        axis = q[:, :3]
-        angle = 2 * np.arctan2(np.linalg.norm(axis, axis=1), q[:, 3])
-        local = np.array([np.eye(3) if np.linalg.norm(a) < 1e-9 else about(a, np.degrees(t)) for a, t in zip(axis, angle)])
-        points.append(forward(local, interpolate_loop(root, beat / clip["beats"]))[0])
-        beats.append(beat)
-    return np.array(points), np.array(beats)
+    quats, root = quaternions(clip["poses"]), np.array(clip["root"])
+    beats = np.arange(round(clip["beats"] * 60 / tempo * fps)) / fps * tempo / 60
+    turns = np.array([interpolate_loop(quats, beat / clip["beats"]) for beat in beats])
+    turns = torch.from_numpy(turns / np.linalg.norm(turns, axis=-1, keepdims=True))
+    places = np.array([interpolate_loop(root, beat / clip["beats"]) for beat in beats])
+    return forward_kinematics(quaternion_to_matrix(turns), torch.from_numpy(places)).numpy(), beats
 
 
 def slides(track: np.ndarray, spans: list[tuple[float, float]], beats: np.ndarray, period: float) -> list[float]:
@@ -69,11 +55,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tempo", type=float, default=116)
     options = parser.parse_args()
-    from choreography import choreographies
-    from clips import ClipSolver
-
     plans = {p.id: p for p in choreographies()}
-    fps = SPEC["fps"]
+    fps = spec.FPS
     print(f"{'clip':20} speed m/s  jerk m/s3  slide cm  low toe cm  max deg/frame")
     for clip in json.loads(SEEDS.read_text())["clips"]:
         points, beats = play(clip, options.tempo, fps)
@@ -85,13 +68,13 @@ def main() -> None:
         for side in (0, 1):
             spans = [(s.start, s.end) for s in solver.feet[side].stands]
             sliding += slides(points[:, 10 + side], spans, beats, clip["beats"])
-        quats = np.array([quaternions(np.array(p)) for p in clip["poses"]])
+        quats = quaternions(clip["poses"])
         step = 2 * np.degrees(np.arccos(np.clip(np.abs((quats * np.roll(quats, -1, 0)).sum(-1)), 0, 1)))
         where = np.unravel_index(step.argmax(), step.shape)
         print(
             f"{clip['id']:20} {np.linalg.norm(velocity, axis=-1).mean():9.2f} {np.linalg.norm(third, axis=-1).mean():10.0f}"
             f" {max(sliding) * 100:9.2f} {(points[:, 10:12, 1].min() - TOE_HEIGHT) * 100:11.2f}"
-            f"  {step.max():.0f} at {where[0] / clip['rate']:g} {SPEC['skeleton']['joints'][where[1]]}"
+            f"  {step.max():.0f} at {where[0] / clip['rate']:g} {JOINTS[where[1]]}"
         )
 
 

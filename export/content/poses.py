@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from rig import SPEC, Arm, Body, Foot, Solved, mirrored, settle, solve
+from rig import Arm, Body, Foot, Solved, mirrored, settle, solve
 
 OUT = Path(__file__).resolve().parents[2] / "public/library/poses.json"
 
@@ -168,7 +168,7 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
         h=0.925, roll=32, side=-8, turn=-6, twist=4, bend=2, look=-30, look_up=-6, head_tilt=-14,
         la=Arm((0.18, 0.48, 0.04), elbow=(1, -0.2, -0.2), flex=-6), ra=Arm((0.42, -0.28, 0.08), elbow=(0.3, 0.1, -1), flex=-10)), 0.0)
     add("Kneeling reach", "Contemporary", Body(
-        left=Foot(0.14, 0.32, 16), right=Foot(-0.14, -0.52, -4, y=0.045, pitch=152, knee=(-0.1, -0.5, 1)),
+        left=Foot(0.14, 0.32, 16), right=Foot(-0.14, -0.5, -4, y=0.075, point=58, knee=(-0.1, -0.5, 1)),
         h=0.545, tilt=4, bend=-10, roll=2, side=8, twist=20, turn=6, look=6, look_up=30,
         la=Arm((0.4, -0.22, -0.18), elbow=(0.2, -0.3, -1), flex=-15), ra=Arm((0.04, 0.38, 0.35), elbow=(0.9, -0.5, 0), flex=-8)), None)
 
@@ -234,7 +234,6 @@ def main() -> None:
     parser.add_argument("--sheet", help="also draw contact sheets FILE-0.png, FILE-1.png, ...")
     options = parser.parse_args()
     poses = solved_poses()
-    assert len(SPEC["skeleton"]["joints"]) == 24
     document = {
         "version": 1,
         "poses": [

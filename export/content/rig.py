@@ -7,17 +7,20 @@ and elbows can bend one way only.
 
 from __future__ import annotations
 
-import json
+import sys
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+import torch
 
-SPEC = json.loads((Path(__file__).resolve().parents[2] / "web/core/spec.json").read_text())
-JOINTS: list[str] = SPEC["skeleton"]["joints"]
-PARENTS: list[int] = SPEC["skeleton"]["parents"]
-OFFSETS = np.array(SPEC["skeleton"]["offsets"], float)
-TOE_HEIGHT = float(SPEC["skeleton"]["toeHeight"])
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+import spec  # noqa: E402
+from rotation import matrix_to_axis_angle  # noqa: E402
+from skeleton import forward_kinematics, world_rotations  # noqa: E402
+
+JOINTS, PARENTS, TOE_HEIGHT = spec.JOINTS, spec.PARENTS, spec.TOE_HEIGHT
+OFFSETS = np.array(spec.OFFSETS, float)
 
 #: hip, knee, ankle, toe joint indices by side (0 = left, 1 = right)
 LEGS = ((1, 4, 7, 10), (2, 5, 8, 11))
@@ -60,25 +63,8 @@ def about(axis: np.ndarray, degrees: float) -> np.ndarray:
 
 
 def axis_angle(matrix: np.ndarray) -> np.ndarray:
-    """Axis-angle of a rotation matrix, angle in 0..pi, through the quaternion's largest part (safe at pi)."""
-    m = matrix
-    trace = np.trace(m)
-    candidates = np.array([m[0, 0], m[1, 1], m[2, 2], trace])
-    best = int(np.argmax(candidates))
-    q = np.empty(4)
-    if best == 3:
-        q[:] = [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 1 + trace]
-    else:
-        i, j, k = best, (best + 1) % 3, (best + 2) % 3
-        q[i] = 1 - trace + 2 * m[i, i]
-        q[j] = m[j, i] + m[i, j]
-        q[k] = m[k, i] + m[i, k]
-        q[3] = m[k, j] - m[j, k]
-    q /= np.linalg.norm(q)
-    if q[3] < 0:
-        q = -q
-    size = np.linalg.norm(q[:3])
-    return np.zeros(3) if size < 1e-12 else q[:3] / size * 2 * np.arctan2(size, q[3])
+    """Axis-angle [..., 3] of rotation matrices [..., 3, 3], angle in 0..pi."""
+    return matrix_to_axis_angle(torch.from_numpy(matrix)).numpy()
 
 
 def _frame(along: np.ndarray, toward: np.ndarray) -> np.ndarray:
@@ -168,7 +154,7 @@ class Solved:
 
     def rotations(self) -> np.ndarray:
         """72 axis-angle numbers."""
-        return np.concatenate([axis_angle(m) for m in self.local])
+        return axis_angle(self.local).reshape(-1)
 
     def centre_of_mass(self) -> np.ndarray:
         """Whole-body centre of mass, metres."""
@@ -177,15 +163,10 @@ class Solved:
 
 
 def forward(local: np.ndarray, root: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Forward kinematics: world positions (24 x 3) and rotations (24 x 3 x 3)."""
-    points, world = np.zeros((24, 3)), np.zeros((24, 3, 3))
-    for joint, parent in enumerate(PARENTS):
-        if parent < 0:
-            points[joint], world[joint] = root, local[joint]
-        else:
-            points[joint] = points[parent] + world[parent] @ OFFSETS[joint]
-            world[joint] = world[parent] @ local[joint]
-    return points, world
+    """World positions (24 x 3) and rotations (24 x 3 x 3) of local rotations (24 x 3 x 3)."""
+    matrices = torch.from_numpy(local)
+    points = forward_kinematics(matrices, torch.from_numpy(np.asarray(root, float)))
+    return points.numpy(), world_rotations(matrices).numpy()
 
 
 def _hinge(a: np.ndarray, b: np.ndarray, axis: np.ndarray, sign: float, distance: float, limits: tuple[float, float]):
