@@ -20,10 +20,10 @@ class LossConfig:
     sigma: float = 0.1
     literal_sum: bool = False  # eq. 15 as printed: adds "1" once per key pose
     root: float = 0.2  # of the three root numbers within eq. 14
-    reconstruction: float = 1.0  # eq. 14 itself
-    position: float = 6.0  # joint positions, root-aligned, metres
-    velocity: float = 0.6  # joint velocities in the world, m/s
-    speed: float = 0.4  # how fast each joint moves, whatever the direction, m/s
+    reconstruction: float = 0.5  # eq. 14 itself
+    position: float = 10.0  # joint positions, root-aligned, metres
+    velocity: float = 1.0  # joint velocities in the world, m/s
+    speed: float = 1.5  # how fast each joint moves, whatever the direction, m/s
     foot: float = 0.3  # sliding of planted toes, m/s
 
 
@@ -64,9 +64,13 @@ def _norm(vector: Tensor) -> Tensor:
     return (vector * vector).sum(-1).add(1e-8).sqrt()
 
 
-def _pooled_speed(velocity: Tensor) -> Tensor:
-    """[B, T, J, 3] m/s -> mean speed of each joint over half seconds [B, n, J]."""
-    speed = _norm(velocity)
+# Speed is taken over this many frames: over one frame, trembling would pass for dancing.
+SPEED_FRAMES = 5
+
+
+def _pooled_speed(positions: Tensor) -> Tensor:
+    """[B, T, J, 3] metres -> mean speed of each joint over half seconds [B, n, J], m/s."""
+    speed = _norm(positions[:, SPEED_FRAMES:] - positions[:, :-SPEED_FRAMES]) * (FPS / SPEED_FRAMES)
     length = FPS // 2
     whole = speed.shape[1] // length * length
     return speed[:, :whole].unflatten(1, (-1, length)).mean(2)
@@ -93,11 +97,11 @@ def dance_loss(predicted: Tensor, batch: dict[str, Tensor], config: LossConfig) 
     terms["velocity"] = _masked_mean(_norm(ours_velocity - real_velocity).mean(-1), moving)
 
     # Regression to the mean makes uncertain stretches stand still; this term asks for the right amount of motion there.
-    ours_local, real_local = ((p[:, 1:] - p[:, :-1]) * FPS for p in (ours, real))
-    length = FPS // 2
-    known = whole[:, 1:] * whole[:, :-1]
-    known = known[:, : known.shape[1] // length * length].unflatten(1, (-1, length)).min(-1).values
-    terms["speed"] = _masked_mean((_pooled_speed(ours_local) - _pooled_speed(real_local)).abs().mean(-1), known)
+    # Each half second also looks SPEED_FRAMES ahead; all of it must be real.
+    length, count = FPS // 2, (whole.shape[1] - SPEED_FRAMES) // (FPS // 2)
+    reach = whole.unfold(1, length + SPEED_FRAMES, length)[:, :count]
+    apart = (_pooled_speed(ours) - _pooled_speed(real)).abs().mean(-1)
+    terms["speed"] = _masked_mean(apart, reach.min(-1).values)
 
     toes_real = real_world[:, 1:, TOES]
     planted = (toes_real[..., 1] < TOE_HEIGHT + 0.03) & (_norm(real_velocity[:, :, TOES]) < 0.25)

@@ -70,8 +70,19 @@ def test_speed_term_punishes_standing_still():
     motion = synthetic_motion(60, torch.Generator().manual_seed(0))
     still = motion[:1].expand(60, -1)
     _, terms = dance_loss(still[None].clone(), _batch(motion), LossConfig())
-    real = metrics.mean_joint_speed(metrics.joints(motion))[:45].mean()
-    assert terms["speed"] == pytest.approx(float(real), rel=0.05)
+    positions = metrics.joints(motion)
+    real = ((positions[5:] - positions[:-5]).norm(dim=-1) * FPS / 5)[:45].mean()  # three half seconds, over 5 frames each
+    assert terms["speed"] == pytest.approx(float(real), rel=0.01)
+
+
+def test_speed_term_does_not_take_trembling_for_dance():
+    motion = synthetic_motion(60, torch.Generator().manual_seed(0))
+    still = motion[:1].expand(60, -1).clone()
+    trembling = still.clone()
+    trembling[::5] = motion[1]  # a jump every 5 frames: fast from frame to frame, at rest over 5 frames
+    _, at_rest = dance_loss(still[None], _batch(motion), LossConfig())
+    _, jumping = dance_loss(trembling[None], _batch(motion), LossConfig())
+    assert jumping["speed"] == pytest.approx(at_rest["speed"], rel=1e-3)
 
 
 def test_invalid_frames_do_not_count():
