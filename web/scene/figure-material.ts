@@ -56,14 +56,17 @@ float onLeg = (1.0 - smoothstep(${height('left_ankle')}, ${height('left_hip')} +
 float tint = max(onArm, onLeg);
 float paintRoughness = 0.55;
 vec3 paint = mix(bodyColour, side, 0.8 * tint);
-if (part > 2.5) {
-  paint = side * 0.9;
-  paintRoughness = 0.45;
-  if (part > 3.5) paint = mix(paint, bodyColour, 1.0 - smoothstep(-0.001, 0.001, vRest.y - 0.015));
-} else if (part > 1.5) {
+// Gloves and shoes are painted on, so that their edges are clean whatever the mesh below them.
+float cuff = reach > 0.4 ? reach - (${reach('left_wrist')} - 0.058) : ${height('left_ankle')} + 0.06 + 0.25 * (vRest.z + 0.04) - vRest.y;
+float covered = part < 0.5 || part > 2.5 ? smoothstep(-0.6, 0.6, cuff / max(fwidth(cuff), 1e-5)) : 0.0;
+paint = mix(paint, side * 0.88, covered);
+paintRoughness = mix(paintRoughness, 0.42, covered);
+if (part > 3.5) {
+  paint = mix(paint, bodyColour, 1.0 - smoothstep(-0.6, 0.6, (vRest.y - 0.017) / max(fwidth(vRest.y), 1e-5)));
+} else if (part > 1.5 && part < 2.5) {
   paint = visorColour;
   paintRoughness = 0.14;
-} else if (part > 0.5 && reach > 0.0725) {
+} else if (part > 0.5 && part < 1.5 && reach > 0.0725) {
   paint = side;
 }
 diffuseColor.rgb = paint;`;

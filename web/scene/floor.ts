@@ -11,7 +11,7 @@ import {
 import { jointIndex } from '../core/skeleton';
 
 /** Background of the stage: what the floor fades into. */
-export const STAGE_COLOURS = { top: new Color('#0a0c11'), horizon: new Color('#171a21'), floor: new Color('#45474c') };
+export const STAGE_COLOURS = { top: new Color('#0a0c11'), horizon: new Color('#171a21'), floor: new Color('#30333b') };
 
 /** Balls that darken the floor below them: [joint, radius in metres]. */
 const BLOCKERS: [number, number][] = (
@@ -41,7 +41,12 @@ export class Floor {
   };
 
   constructor() {
-    const material = new MeshLambertMaterial({ color: STAGE_COLOURS.floor, transparent: true, dithering: true });
+    const material = new MeshLambertMaterial({
+      color: STAGE_COLOURS.floor,
+      transparent: true,
+      dithering: true,
+      toneMapped: false,
+    });
     material.onBeforeCompile = (shader) => {
       Object.assign(shader.uniforms, this.uniforms);
       shader.vertexShader = shader.vertexShader

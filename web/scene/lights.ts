@@ -16,7 +16,7 @@ export class Lights {
     if (!shadows) return;
     this.key.castShadow = true;
     const { shadow } = this.key;
-    shadow.mapSize.set(1024, 1024);
+    shadow.mapSize.set(2048, 2048);
     Object.assign(shadow.camera, { left: -1.7, right: 1.7, top: 1.9, bottom: -1.6, near: 1, far: 9 });
     shadow.radius = 3.5;
     shadow.bias = -0.0004;

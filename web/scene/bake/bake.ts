@@ -17,7 +17,7 @@ function opennessAt(shapes: Shape[], p: number[], n: number[]): number {
     const free = Math.min(...shapes.map((shape) => shape(x, y, z)));
     blocked += Math.max(0, distance - free) / distance / 2 ** (step - 1);
   }
-  return Math.min(Math.max(1 - 0.75 * blocked, 0), 1);
+  return Math.min(Math.max(1 - 0.6 * blocked, 0), 1);
 }
 
 const parts = figureParts();

@@ -43,19 +43,26 @@ function torso(): Shape {
       { t: 0.43, u: 0.115, v: 0.08, dv: -0.003 },
       { t: 0.6, u: 0.122, v: 0.088, dv: -0.004 },
       { t: 0.76, u: 0.138, v: 0.1, dv: 0.0 },
-      { t: 0.88, u: 0.136, v: 0.093, dv: 0.01 },
-      { t: 1.0, u: 0.075, v: 0.06, dv: 0.026 },
+      { t: 0.88, u: 0.136, v: 0.092, dv: 0.01 },
+      { t: 0.97, u: 0.112, v: 0.074, dv: 0.019 },
+      { t: 1.04, u: 0.074, v: 0.056, dv: 0.025 },
     ],
-    [0.06, 0.04],
+    [0.06, 0.03],
     2.3,
   );
   const chest = both(ellipsoid([0.06, 1.345, 0.046], [0.08, 0.075, 0.034]), 0.07);
-  const fold = both(limb([0.08, 1.33, 0.03], [0.19, 1.405, -0.03], 0.036, 0.034), 0.03);
+  const fold = both(limb([0.08, 1.335, 0.03], [0.203, 1.407, -0.014], 0.04, 0.039), 0.03);
   const seat = both(ellipsoid([0.064, hip[1] + 0.022, -0.056], [0.074, 0.084, 0.06]), 0.035);
-  const trapezius = both(limb([0.018, 1.497, -0.042], [0.172, 1.438, -0.05], 0.036, 0.03), 0.04);
-  const side = both(limb([0.11, 1.23, -0.03], [0.178, 1.392, -0.055], 0.028, 0.032), 0.02);
-  const throat = limb([0, 1.43, -0.035], add(neck, [0, 0.035, 0.012]), 0.058, 0.05);
-  return blend(0.045, trunk, chest, seat, blend(0.03, trapezius, side, fold), throat);
+  const trapezius = both(limb([0.014, 1.478, -0.048], [0.168, 1.436, -0.05], 0.027, 0.03), 0.04);
+  const side = both(limb([0.088, 1.14, -0.02], [0.182, 1.392, -0.055], 0.024, 0.034), 0.02);
+  const clavicle = both(limb([0.03, 1.432, -0.008], [0.17, 1.43, -0.035], 0.034, 0.033), 0.03);
+  // The neck ends inside the head, so that the two meet in a clean line under the jaw.
+  const throat = blend(
+    0.03,
+    limb([0, 1.43, -0.035], add(neck, [0, 0.03, 0.008]), 0.056, 0.048),
+    limb(add(neck, [0, 0.03, 0.008]), add(head, [0, 0.03, -0.014]), 0.047, 0.046),
+  );
+  return blend(0.024, blend(0.045, trunk, chest, seat, blend(0.025, trapezius, clavicle, side, fold)), throat);
 }
 
 function arm(): Shape {
@@ -136,14 +143,14 @@ function glove(): Shape {
     hand,
     [0, 1, 0],
     [
-      { t: -0.75, u: 0.0246, v: 0.031 },
-      { t: -0.3, u: 0.0228, v: 0.0296 },
-      { t: 0.0, u: 0.0214, v: 0.0302 },
+      { t: -0.5, u: 0.019, v: 0.0255 },
+      { t: -0.15, u: 0.0205, v: 0.028 },
+      { t: 0.05, u: 0.021, v: 0.0305 },
       { t: 0.45, u: 0.019, v: 0.037 },
       { t: 0.85, u: 0.016, v: 0.041 },
       { t: 1.05, u: 0.013, v: 0.039 },
     ],
-    [0.03, 0.012],
+    [0.02, 0.012],
   );
   const knuckles = along(1.0);
   // Forward offset of the knuckle, spread at the tip, length: index, middle, ring, little finger; slightly bent, as in a relaxed hand.
@@ -164,7 +171,7 @@ function glove(): Shape {
     limb(add(along(0.62), [0, -0.016, 0.052]), add(along(0.98), [0.004, -0.026, 0.064]), 0.0122, 0.0095),
   );
   const whole = blend(0.016, palm, blend(0.0045, fingers[0], fingers[1], fingers[2], fingers[3]), thumb);
-  return common(0.006, whole, below([wrist[0] - 0.046, 0, 0], [-1, 0, 0]));
+  return whole;
 }
 
 function shoe(): Shape {
@@ -195,18 +202,13 @@ function shoe(): Shape {
     add(ankle, [0, -0.03, -0.002]),
     [1, 0, 0],
     [
-      { t: 0, u: 0.0285, v: 0.0335 },
-      { t: 0.5, u: 0.0305, v: 0.036 },
+      { t: 0, u: 0.0245, v: 0.029 },
+      { t: 0.5, u: 0.0268, v: 0.0325 },
       { t: 1, u: 0.033, v: 0.04 },
     ],
     [0.02, 0.02],
   );
-  const tilt: Vector = [0, 1, -0.22];
-  return common(
-    0.007,
-    blend(0.035, upper, common(0.006, cuff, below(add(ankle, [0, 0.042, 0]), tilt))),
-    below([0, 0, 0], [0, -1, 0]),
-  );
+  return common(0.012, blend(0.035, upper, cuff), below([0, 0, 0], [0, -1, 0]));
 }
 
 function skull(): Shape {
@@ -218,10 +220,9 @@ function skull(): Shape {
 }
 
 function headShape(): Shape {
-  const column = limb(add(neck, [0, -0.03, -0.002]), add(head, [0, 0.02, -0.012]), 0.044, 0.046);
   // Round pods on the ears.
   const ears = both(ellipsoid([0.0715, head[1] + 0.074, head[2] - 0.012], [0.0125, 0.03, 0.03]), 0.01);
-  return blend(0.005, blend(0.028, skull(), column), ears);
+  return blend(0.005, skull(), ears);
 }
 
 /** A face shield: broad over the eyes, narrow at the chin, with a ridge down the middle that gives the face its profile. */
@@ -244,14 +245,13 @@ const suit = (): Shape => {
   const legs = both(leg(), 0.022);
   const cutWrist: Shape = (x) => Math.abs(x) - (wrist[0] - 0.02);
   const cutAnkle: Shape = (_x, y) => ankle[1] + 0.005 - y;
-  const collar = below(add(neck, [0, 0.022, 0]), [0, 1, -0.35]);
-  return common(0.005, blend(0.035, torso(), arms, legs), cutWrist, cutAnkle, collar);
+  return common(0.005, blend(0.035, torso(), arms, legs), cutWrist, cutAnkle);
 };
 
 /** Every part of the figure. */
 export function figureParts(): Part[] {
   return [
-    { name: 'body', shape: suit(), low: [0, 0.05, -0.2], high: [0.73, 1.56, 0.16], cell: 0.012, symmetric: true },
+    { name: 'body', shape: suit(), low: [0, 0.05, -0.2], high: [0.73, 1.67, 0.16], cell: 0.012, symmetric: true },
     { name: 'head', shape: headShape(), low: [0, 1.4, -0.14], high: [0.12, 1.8, 0.17], cell: 0.0072, symmetric: true },
     { name: 'visor', shape: visor(), low: [0, 1.53, 0], high: [0.12, 1.74, 0.17], cell: 0.0043, symmetric: true },
     {
@@ -262,6 +262,6 @@ export function figureParts(): Part[] {
       cell: 0.005,
       symmetric: false,
     },
-    { name: 'shoe', shape: shoe(), low: [0.02, -0.02, -0.15], high: [0.22, 0.17, 0.2], cell: 0.0082, symmetric: false },
+    { name: 'shoe', shape: shoe(), low: [0.02, -0.02, -0.15], high: [0.22, 0.17, 0.2], cell: 0.0072, symmetric: false },
   ];
 }
