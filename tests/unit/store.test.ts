@@ -225,6 +225,8 @@ describe('the pose editor', () => {
     store.changePose(pose(0.1), 'start');
     store.changePose(pose(0.2), 'change');
     store.changePose(pose(0.3), 'commit');
+    store.changePose(pose(0.3), 'start');
+    store.changePose(pose(0.3), 'commit'); // a click that turns nothing is no step
     store.setJointDegrees(4, [90, 0, 0]);
     expect(store.state.draft.value!.rotations[12]).toBeCloseTo(Math.PI / 2, 9);
     store.undo();

@@ -14,6 +14,7 @@ export function poseActions(
 ) {
   const { state, services } = context;
   let history = new History<number[]>([]);
+  let before: readonly number[] = [];
 
   const refresh = () => {
     const draft = state.draft.value;
@@ -79,12 +80,20 @@ export function poseActions(
     /** A gizmo drag: many changes, one step. */
     changePose(rotations: readonly number[], phase: 'start' | 'change' | 'commit' | 'cancel'): void {
       if (!state.draft.value || rotations.length !== POSE_SIZE) return;
-      if (phase === 'start') history.capture();
-      else if (phase === 'cancel') history.discard();
+      if (phase === 'start') {
+        before = history.present;
+        history.capture();
+      } else if (phase === 'cancel') history.discard();
       else {
-        if (!history.capturing) history.capture();
+        if (!history.capturing) {
+          before = history.present;
+          history.capture();
+        }
         history.preview([...rotations]);
-        if (phase === 'commit') history.commit('Rotate joint');
+        // A click on a ring turns nothing and must be no step.
+        const turned = rotations.some((value, i) => Math.abs(value - before[i]) > 1e-6);
+        if (phase === 'commit' && turned) history.commit('Rotate joint');
+        else if (phase === 'commit') history.discard();
       }
       refresh();
     },
