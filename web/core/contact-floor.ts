@@ -4,25 +4,33 @@ import { bump, gaussianSmooth } from './interpolate';
 import { spec } from './spec';
 import type { Motion } from './types';
 
-/** What counts as a jump: clear of the floor by `start`, peaking above `peak` metres, for a time a person can be in the air. */
-const JUMP = { start: 0.04, peak: 0.08, shortest: 0.1, longest: 0.8, highest: 0.6 };
+/** What counts as a jump: clear of the floor by `start`, above `peak` at its top, the pelvis up by `rise` (metres), for a time a person can be in the air. */
+const JUMP = { start: 0.04, peak: 0.08, rise: 0.03, shortest: 0.1, longest: 0.8, highest: 0.6 };
 /** Frames over which a lift fades on each side. */
 const LIFT_REACH = 8;
 
 /**
- * Height of each frame above the floor where the dance really jumps, else 0, metres.
- * @param clearance how far the lowest point is above the floor, metres
+ * Height of each frame above the floor where the dance really jumps, else 0, metres: the feet are clear of the floor and the pelvis
+ * rises (legs that are only drawn up belong on the floor).
+ * @param ground pelvis height at which the lowest point touches the floor, metres
+ * @param pelvis pelvis height, metres
  */
-export function jumpHeights(clearance: Float64Array): Float64Array {
+export function jumpHeights(ground: Float64Array, pelvis: Float64Array): Float64Array {
+  const clearance = pelvis.map((y, i) => y - ground[i]);
   const heights = new Float64Array(clearance.length);
   for (let start = 0; start < clearance.length; start++) {
     if (clearance[start] <= JUMP.start) continue;
     let end = start;
     let peak = 0;
-    while (end < clearance.length && clearance[end] > JUMP.start) peak = Math.max(peak, clearance[end++]);
+    let top = -Infinity;
+    for (; end < clearance.length && clearance[end] > JUMP.start; end++) {
+      peak = Math.max(peak, clearance[end]);
+      top = Math.max(top, pelvis[end]);
+    }
     const seconds = (end - start) / spec.fps;
     const cut = end === clearance.length || start === 0;
-    if (!cut && peak > JUMP.peak && seconds >= JUMP.shortest && seconds <= JUMP.longest) {
+    const rises = top - Math.max(pelvis[start], pelvis[end - 1]) > JUMP.rise;
+    if (!cut && rises && peak > JUMP.peak && seconds >= JUMP.shortest && seconds <= JUMP.longest) {
       const scale = Math.min(peak, JUMP.highest) / (peak - JUMP.start);
       for (let i = start; i < end; i++) heights[i] = (clearance[i] - JUMP.start) * scale;
     }
@@ -33,7 +41,7 @@ export function jumpHeights(clearance: Float64Array): Float64Array {
 
 /** Pelvis heights that follow the floor and the jumps without kinks where the support changes. */
 export function pelvisHeights(ground: Float64Array, raw: Float64Array): Float64Array {
-  const jumps = jumpHeights(raw.map((y, i) => y - ground[i]));
+  const jumps = jumpHeights(ground, raw);
   return gaussianSmooth(
     ground.map((y, i) => y + jumps[i]),
     1,

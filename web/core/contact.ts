@@ -20,7 +20,7 @@ const CONTEXT = 12;
 export const LOOKAHEAD = 20;
 const KEY_REACH = 6;
 /** Beyond this distance from the centre of the stage the figure is led back, metres; and how fast at most, m/s. */
-const STAGE = { radius: 1.2, speed: 0.12 };
+const STAGE = { radius: 1.2, speed: 0.3 };
 
 /** What one stretch hands to the next. */
 export interface ContactState {
@@ -159,7 +159,7 @@ function wayOverFloor(input: Motion, output: Motion, track: BodyTrack, heights: 
 /** Slow pull back to the centre, metres a frame; it changes over about a second, so that nobody sees it begin. */
 function leadBack(drift: Velocity, x: number, z: number, fps: number): Velocity {
   const distance = Math.hypot(x, z);
-  const speed = Math.min(STAGE.speed, 0.2 * Math.max(0, distance - STAGE.radius)) / fps;
+  const speed = Math.min(STAGE.speed, 0.15 * Math.max(0, distance - STAGE.radius)) / fps;
   const wanted = distance > 0 ? [(-x / distance) * speed, (-z / distance) * speed] : [0, 0];
   return [drift[0] + (wanted[0] - drift[0]) / fps, drift[1] + (wanted[1] - drift[1]) / fps];
 }

@@ -1,0 +1,52 @@
+import { describe, expect, it } from 'vitest';
+import { keysOnFrames } from '../../web/core/correction';
+import { fillerPoses, headingCurve, KEY_DISTANCE } from '../../web/core/filler';
+import { headingOf } from '../../web/core/localframe';
+import { key, poseWith, steadyGrid, stepClip } from './dance';
+
+const grid = steadyGrid(20);
+const turned = (angle: number) => poseWith({ pelvis: [0, angle, 0] });
+const keys = keysOnFrames([key(4.3, turned(0)), key(5.3, turned(0)), key(12.3, turned(2))], 30, 600);
+const request = { clip: stepClip(), grid, keys, from: 0, to: 600, variation: 0.5, seed: 3 };
+
+describe('filler poses', () => {
+  it('stand on beats, keep away from keys and leave short gaps alone', () => {
+    const fillers = fillerPoses(request, headingCurve(keys));
+    const beats = new Set(grid.beats.map((beat) => Math.round(beat * 30)));
+    expect(fillers.length).toBeGreaterThan(25);
+    for (const { frame } of fillers) {
+      expect(beats.has(frame)).toBe(true);
+      for (const other of keys) expect(Math.abs(frame - other.frame)).toBeGreaterThanOrEqual(KEY_DISTANCE * 30);
+      expect(frame > 4.3 * 30 && frame < 5.3 * 30).toBe(false);
+    }
+  });
+
+  it('are the same for the same seed and others for another', () => {
+    const once = fillerPoses(request, headingCurve(keys));
+    expect(fillerPoses(request, headingCurve(keys))).toEqual(once);
+    expect(fillerPoses({ ...request, seed: 4 }, headingCurve(keys))).not.toEqual(once);
+  });
+
+  it('follow the clip in its own order without variation', () => {
+    const plain = (seed: number) => fillerPoses({ ...request, keys: [], variation: 0, seed }, () => 0);
+    expect(plain(1)).toEqual(plain(2));
+    const fillers = plain(1);
+    // The clip is four beats long, so the fifth filler repeats the first.
+    expect(Array.from(fillers[4].quaternions)).toEqual(Array.from(fillers[0].quaternions, (v) => expect.closeTo(v, 5)));
+  });
+
+  it('of a part of the song are those of the whole', () => {
+    const whole = fillerPoses({ ...request, keys: [] }, () => 0);
+    const part = fillerPoses({ ...request, keys: [], from: 200, to: 400 }, () => 0);
+    expect(part).toEqual(whole.filter(({ frame }) => frame >= 199 + KEY_DISTANCE * 30 && frame < 400));
+  });
+
+  it('face where the keys face', () => {
+    const heading = headingCurve(keys);
+    expect(heading(129)).toBeCloseTo(0, 6);
+    expect(heading(369)).toBeCloseTo(2, 6);
+    expect(heading(600)).toBeCloseTo(2, 6);
+    const last = fillerPoses(request, heading).at(-1)!;
+    expect(headingOf(last.quaternions)).toBeCloseTo(2, 1);
+  });
+});
