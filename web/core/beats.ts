@@ -11,10 +11,10 @@ const WINDOW_SECONDS = 12;
 const STEP_SECONDS = 2;
 /** Weight of repetition after a bar against repetition after a beat. */
 const BAR_WEIGHT = 1.5;
-/** Cost of a tempo change by one octave between windows, in units of the tempo score. */
-const CHANGE_COST = 3;
+/** Cost of a tempo change between windows, times the square of its size in octaves: rubato is cheap, a jump is dear. */
+const CHANGE_COST = 25;
 /** Weight of even spacing against strong onsets in the beat search (Ellis 2007, alpha). */
-const TIGHTNESS = 100;
+const TIGHTNESS = 200;
 
 /** Beat period over time. */
 export interface TempoCurve {
@@ -132,7 +132,7 @@ function smoothestPath(scores: Float64Array[]): number[] {
     for (let c = 0; c < count; c++) {
       let best = -Infinity;
       for (let p = 0; p < count; p++) {
-        const value = total[p] - (CHANGE_COST * Math.abs(p - c)) / STEPS_PER_OCTAVE;
+        const value = total[p] - CHANGE_COST * ((p - c) / STEPS_PER_OCTAVE) ** 2;
         if (value > best) {
           best = value;
           from[c] = p;

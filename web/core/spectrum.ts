@@ -55,10 +55,11 @@ export class SpectrumAnalyser {
     const { size, real, imaginary, window, reversed } = this;
     const half = size / 2;
     // Even samples as real part, odd as imaginary: one complex FFT of half the size does a real frame.
+    const at = offset | 0;
     for (let i = 0; i < half; i++) {
       const target = reversed[i];
-      real[target] = samples[offset + 2 * i] * window[2 * i];
-      imaginary[target] = samples[offset + 2 * i + 1] * window[2 * i + 1];
+      real[target] = samples[at + 2 * i] * window[2 * i];
+      imaginary[target] = samples[at + 2 * i + 1] * window[2 * i + 1];
     }
     this.transform(half);
     this.separate(half);
