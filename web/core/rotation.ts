@@ -10,7 +10,10 @@ export type Writable = number[] | Float32Array | Float64Array;
 const JOINTS_IN_POSE = 24;
 
 /** Same rotation, unit length, with the sign that makes w >= 0 (at w = 0 the first non-zero of x, y, z is positive). */
-export function canonicalQuaternion(q: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+export function canonicalQuaternion<T extends Writable = number[]>(
+  q: Numbers,
+  out: T = [0, 0, 0, 1] as Writable as T,
+): T {
   const [x, y, z, w] = [q[0], q[1], q[2], q[3]];
   const length = Math.sqrt(x * x + y * y + z * z + w * w);
   if (!(length > 1e-12)) return set(out, 0, 0, 0, 1);
@@ -19,7 +22,7 @@ export function canonicalQuaternion(q: Numbers, out: Writable = [0, 0, 0, 1]): W
   return set(out, x * scale, y * scale, z * scale, w * scale);
 }
 
-function set(out: Writable, x: number, y: number, z: number, w: number): Writable {
+function set<T extends Writable>(out: T, x: number, y: number, z: number, w: number): T {
   // `+ 0` turns a negative zero into zero, so that equal rotations are equal numbers.
   out[0] = x + 0;
   out[1] = y + 0;
@@ -29,7 +32,10 @@ function set(out: Writable, x: number, y: number, z: number, w: number): Writabl
 }
 
 /** Rotation vector of any length (radians) to a canonical quaternion. */
-export function axisAngleToQuaternion(aa: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+export function axisAngleToQuaternion<T extends Writable = number[]>(
+  aa: Numbers,
+  out: T = [0, 0, 0, 1] as Writable as T,
+): T {
   const [x, y, z] = [aa[0], aa[1], aa[2]];
   const angle = Math.hypot(x, y, z);
   // Below 1e-4 rad the series is exact to double precision and needs no division by the angle.
@@ -38,7 +44,10 @@ export function axisAngleToQuaternion(aa: Numbers, out: Writable = [0, 0, 0, 1])
 }
 
 /** Quaternion (any sign) to the shortest rotation vector, 0..pi radians long. */
-export function quaternionToAxisAngle(q: Numbers, out: Writable = [0, 0, 0]): Writable {
+export function quaternionToAxisAngle<T extends Writable = number[]>(
+  q: Numbers,
+  out: T = [0, 0, 0] as Writable as T,
+): T {
   const [x, y, z, w] = canonicalQuaternion(q);
   const sine = Math.hypot(x, y, z);
   const scale = sine < 1e-9 ? 2 / w : (2 * Math.atan2(sine, w)) / sine;
@@ -49,7 +58,10 @@ export function quaternionToAxisAngle(q: Numbers, out: Writable = [0, 0, 0]): Wr
 }
 
 /** Columns 0 and 1 of the rotation matrix of a unit quaternion: 6 numbers. */
-export function quaternionToSixD(q: Numbers, out: Writable = [0, 0, 0, 0, 0, 0]): Writable {
+export function quaternionToSixD<T extends Writable = number[]>(
+  q: Numbers,
+  out: T = [0, 0, 0, 0, 0, 0] as Writable as T,
+): T {
   const [x, y, z, w] = [q[0], q[1], q[2], q[3]];
   out[0] = 1 - 2 * (y * y + z * z);
   out[1] = 2 * (x * y + w * z);
@@ -64,7 +76,10 @@ export function quaternionToSixD(q: Numbers, out: Writable = [0, 0, 0, 0, 0, 0])
  * Nearest proper rotation by Gram-Schmidt (Zhou et al. 2019, eq. 15), as a canonical quaternion.
  * Columns that are zero, parallel or not finite still give a rotation, so that a bad network output never becomes NaN.
  */
-export function sixDToQuaternion(sixD: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+export function sixDToQuaternion<T extends Writable = number[]>(
+  sixD: Numbers,
+  out: T = [0, 0, 0, 1] as Writable as T,
+): T {
   let [ax, ay, az] = [sixD[0], sixD[1], sixD[2]];
   let length = Math.sqrt(ax * ax + ay * ay + az * az);
   if (usable(length)) [ax, ay, az] = [ax / length, ay / length, az / length];
@@ -87,7 +102,10 @@ function usable(length: number): boolean {
 }
 
 /** Row-major 3 x 3 rotation matrix to a canonical quaternion, dividing by the largest component (Shepperd 1978). */
-export function matrixToQuaternion(m: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+export function matrixToQuaternion<T extends Writable = number[]>(
+  m: Numbers,
+  out: T = [0, 0, 0, 1] as Writable as T,
+): T {
   const trace = m[0] + m[4] + m[8];
   let q: number[];
   if (trace > Math.max(m[0], m[4], m[8])) q = [m[7] - m[5], m[2] - m[6], m[3] - m[1], 1 + trace];
@@ -98,7 +116,11 @@ export function matrixToQuaternion(m: Numbers, out: Writable = [0, 0, 0, 1]): Wr
 }
 
 /** Hamilton product: `multiply(a, b)` turns by b first, then by a. */
-export function multiply(a: Numbers, b: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+export function multiply<T extends Writable = number[]>(
+  a: Numbers,
+  b: Numbers,
+  out: T = [0, 0, 0, 1] as Writable as T,
+): T {
   const [ax, ay, az, aw] = [a[0], a[1], a[2], a[3]];
   const [bx, by, bz, bw] = [b[0], b[1], b[2], b[3]];
   out[0] = aw * bx + ax * bw + ay * bz - az * by;
@@ -109,7 +131,7 @@ export function multiply(a: Numbers, b: Numbers, out: Writable = [0, 0, 0, 1]): 
 }
 
 /** The inverse of a unit quaternion. */
-export function conjugate(q: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
+export function conjugate<T extends Writable = number[]>(q: Numbers, out: T = [0, 0, 0, 1] as Writable as T): T {
   out[0] = -q[0];
   out[1] = -q[1];
   out[2] = -q[2];
@@ -118,7 +140,11 @@ export function conjugate(q: Numbers, out: Writable = [0, 0, 0, 1]): Writable {
 }
 
 /** A vector turned by a unit quaternion. */
-export function rotateVector(q: Numbers, v: Numbers, out: Writable = [0, 0, 0]): Writable {
+export function rotateVector<T extends Writable = number[]>(
+  q: Numbers,
+  v: Numbers,
+  out: T = [0, 0, 0] as Writable as T,
+): T {
   const [x, y, z, w] = [q[0], q[1], q[2], q[3]];
   const [vx, vy, vz] = [v[0], v[1], v[2]];
   const tx = 2 * (y * vz - z * vy);
@@ -131,7 +157,12 @@ export function rotateVector(q: Numbers, v: Numbers, out: Writable = [0, 0, 0]):
 }
 
 /** Shortest great-circle interpolation between unit quaternions; `t` = 0 gives a, 1 gives b. */
-export function slerp(a: Numbers, b: Numbers, t: number, out: Writable = [0, 0, 0, 1]): Writable {
+export function slerp<T extends Writable = number[]>(
+  a: Numbers,
+  b: Numbers,
+  t: number,
+  out: T = [0, 0, 0, 1] as Writable as T,
+): T {
   const dot = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
   const cosine = Math.min(Math.abs(dot), 1);
   let from = 1 - t;
