@@ -6,16 +6,24 @@ import { multiply, poseToQuaternions, rotateVector } from '../../web/core/rotati
 import { spec } from '../../web/core/spec';
 import { figureParts } from '../../web/scene/bake/body';
 import { weightsAt } from '../../web/scene/bake/weights';
-import { buildGeometry } from '../../web/scene/figure-asset';
-import { decodeFigure, encodeFigure, mirrorFigure, PARTS, type HalfFigure } from '../../web/scene/figure-file';
+import { buildFigure } from '../../web/scene/figure-asset';
+import {
+  decodeFigure,
+  decodeLevels,
+  encodeLevels,
+  mirrorFigure,
+  PARTS,
+  type HalfFigure,
+} from '../../web/scene/figure-file';
 import { REST, REST_HEIGHT } from '../../web/scene/rest';
 import { MIRRORED_BONES, SKIN_BONES, skinBone, SkinPose, twistAngle } from '../../web/scene/skin-bones';
 
 const bytes = gunzipSync(readFileSync(new URL('../../web/scene/figure.bin', import.meta.url)));
 let half: HalfFigure;
+let coarse: HalfFigure;
 let whole: HalfFigure;
 beforeAll(() => {
-  half = decodeFigure(bytes);
+  [half, coarse] = decodeLevels(bytes);
   whole = mirrorFigure(half);
 });
 
@@ -125,19 +133,25 @@ describe('figure.bin', () => {
   });
 
   it('survives writing and reading', () => {
-    const again = decodeFigure(encodeFigure(half));
+    const [again, second] = decodeLevels(encodeLevels([half, coarse]));
+    expect(second.triangles).toEqual(coarse.triangles);
     expect(again.triangles).toEqual(half.triangles);
     expect(again.bones).toEqual(half.bones);
     expect(again.positions.every((value, i) => Math.abs(value - half.positions[i]) < 2e-5)).toBe(true);
-    expect(() => decodeFigure(bytes.subarray(0, 500))).toThrow('cut off');
+    expect(() => decodeLevels(bytes.subarray(0, 500))).toThrow('cut off');
+    expect(() => decodeLevels(new Uint8Array(3))).toThrow('not a figure file');
     expect(() => decodeFigure(new Uint8Array(64))).toThrow('not a figure file');
   });
 
-  it('becomes a geometry small enough for any phone', () => {
-    const geometry = buildGeometry(bytes);
-    expect(geometry.getAttribute('position').count).toBe(whole.parts.length);
+  it('becomes one geometry whose levels use their own vertices only, the coarse one at most a third of the fine one', () => {
+    const { geometry, levels } = buildFigure(bytes);
+    expect(levels.map(({ count }) => count)).toEqual([half.triangles.length * 2, coarse.triangles.length * 2]);
+    expect(levels[1].count * 3).toBeLessThan(levels[0].count);
     expect(geometry.getAttribute('position').count).toBeLessThan(40_000);
-    expect(bytes.length).toBeLessThan(800_000);
+    const index = geometry.getIndex()!.array;
+    const fine = whole.parts.length;
+    expect(index.slice(0, levels[1].start).every((v) => v < fine)).toBe(true);
+    expect(index.slice(levels[1].start).every((v) => v >= fine)).toBe(true);
   });
 });
 

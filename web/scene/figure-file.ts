@@ -1,4 +1,4 @@
-/** The figure's mesh file: the left half of the rest-pose surface with skin weights, deflated. Written by bake/bake.ts. */
+/** The figure's mesh file: left halves of the rest-pose surface with skin weights, in levels of detail. Written by bake/bake.ts. */
 import { MIRRORED_BONES } from './skin-bones';
 
 /** Parts of the figure, in the order of their numbers in the file. */
@@ -31,7 +31,35 @@ export type WholeFigure = HalfFigure;
 const MAGIC = 0x47464250; // "PBFG"
 const RANGE = 2; // metres that the 16-bit positions span, from -RANGE / 2 in x and z and from 0 in y upwards
 
-/** The half figure as bytes (not yet deflated). */
+/** Several levels of detail, finest first, as bytes (not yet deflated): each with its length before it. */
+export function encodeLevels(levels: HalfFigure[]): Uint8Array<ArrayBuffer> {
+  const encoded = levels.map(encodeFigure);
+  const out = new Uint8Array(encoded.reduce((sum, { length }) => sum + 4 + length, 0));
+  let at = 0;
+  for (const level of encoded) {
+    new DataView(out.buffer).setUint32(at, level.length, true);
+    out.set(level, at + 4);
+    at += 4 + level.length;
+  }
+  return out;
+}
+
+/**
+ * Reads what {@link encodeLevels} wrote.
+ * @throws Error when the bytes are something else
+ */
+export function decodeLevels(bytes: Uint8Array): HalfFigure[] {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const levels: HalfFigure[] = [];
+  for (let at = 0; at < bytes.length;) {
+    const length = bytes.length >= at + 4 ? view.getUint32(at, true) : NaN;
+    levels.push(decodeFigure(bytes.subarray(at + 4, at + 4 + length)));
+    at += 4 + length;
+  }
+  return levels;
+}
+
+/** One half figure as bytes. */
 export function encodeFigure(half: HalfFigure): Uint8Array<ArrayBuffer> {
   const n = half.parts.length;
   const m = half.triangles.length;

@@ -1,5 +1,6 @@
 import {
   Bone,
+  BufferGeometry,
   DataTexture,
   FloatType,
   Matrix4,
@@ -8,9 +9,9 @@ import {
   SkinnedMesh,
   Sphere,
   Vector3,
-  type BufferGeometry,
 } from 'three';
 import type { FramePose } from '../core/types';
+import type { FigureAsset } from './figure-asset';
 import { createFigureMaterial } from './figure-material';
 import { SKIN_BONES, SkinPose } from './skin-bones';
 
@@ -44,6 +45,14 @@ class FigureSkeleton extends Skeleton {
   }
 }
 
+/** A geometry with its own draw range over the shared attributes. */
+function ownRange(shared: BufferGeometry): BufferGeometry {
+  const own = new BufferGeometry();
+  own.setIndex(shared.index);
+  for (const [name, attribute] of Object.entries(shared.attributes)) own.setAttribute(name, attribute);
+  return own;
+}
+
 /** The dancer. Give it poses; add `mesh` to a scene. */
 export class Figure {
   readonly mesh: SkinnedMesh;
@@ -52,14 +61,36 @@ export class Figure {
   private readonly bounds = new Sphere(new Vector3(), 1.6);
   private readonly skeleton = new FigureSkeleton(this.pose);
 
-  constructor(geometry: BufferGeometry) {
-    this.mesh = new SkinnedMesh(geometry, createFigureMaterial());
+  /**
+   * @param asset shared by all figures
+   * @param level of detail, 0 the finest
+   */
+  constructor(
+    private readonly asset: FigureAsset,
+    private level = 0,
+  ) {
+    this.mesh = new SkinnedMesh(ownRange(asset.geometry), createFigureMaterial());
+    this.draw(level);
+    // A shadow needs no fingers: it is drawn with the coarsest triangles.
+    this.mesh.onBeforeShadow = () => this.draw(asset.levels.length - 1);
+    this.mesh.onAfterShadow = () => this.draw(this.level);
     this.mesh.bind(this.skeleton, new Matrix4());
     this.mesh.frustumCulled = false;
     // Any pose fits in this sphere round the pelvis; without it three would skin every vertex on the CPU to sort the scene.
     this.mesh.boundingSphere = this.bounds;
     this.mesh.castShadow = true;
     this.mesh.receiveShadow = true;
+  }
+
+  /** Level of detail, 0 the finest. */
+  set detail(level: number) {
+    this.level = Math.min(Math.max(level, 0), this.asset.levels.length - 1);
+    this.draw(this.level);
+  }
+
+  private draw(level: number): void {
+    const { start, count } = this.asset.levels[level];
+    this.mesh.geometry.setDrawRange(start, count);
   }
 
   /** Moves the figure. */
@@ -69,9 +100,10 @@ export class Figure {
     this.skeleton.refresh();
   }
 
-  /** Frees what belongs to this figure; the geometry is shared and stays. */
+  /** Frees what belongs to this figure. */
   dispose(): void {
     this.skeleton.dispose();
+    this.mesh.geometry.dispose();
     const { material } = this.mesh;
     for (const each of Array.isArray(material) ? material : [material]) each.dispose();
   }

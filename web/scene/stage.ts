@@ -196,9 +196,9 @@ class WebGLStage implements Stage {
   }
 
   private async loadFigure(): Promise<void> {
-    const geometry = await loadFigure();
+    const asset = await loadFigure();
     if (this.disposed) return;
-    const figure = new Figure(geometry);
+    const figure = new Figure(asset);
     this.scene.add(figure.mesh);
     figure.show(this.last);
     // Shaders are built beside the page's own work; nothing is drawn until they are there.
@@ -254,13 +254,19 @@ class WebGLStage implements Stage {
     const draw = this.dirty && this.seen && this.figure !== null;
     if (draw) {
       const ratio = this.drewBefore ? this.governor.sample(elapsed) : undefined;
-      if (ratio !== undefined) this.resize();
+      if (ratio !== undefined) this.lowerQuality();
       this.render();
       this.draws.push(now);
       while (now - this.draws[0] > 1000) this.draws.shift();
     }
     this.drewBefore = draw;
   };
+
+  private lowerQuality(): void {
+    // Still late at well under full resolution: it is the triangles, not the pixels.
+    if (this.figure && this.governor.ratio < 0.7) this.figure.detail = 1;
+    this.resize();
+  }
 
   private render(): void {
     this.dirty = false;

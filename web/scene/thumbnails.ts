@@ -98,13 +98,13 @@ class Studio {
   }
 
   static async open(): Promise<Studio> {
-    const geometry = await loadFigure();
+    const asset = await loadFigure();
     const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     renderer.setClearColor(0, 0);
     renderer.toneMapping = NeutralToneMapping;
     renderer.toneMappingExposure = 1.15;
     renderer.debug.checkShaderErrors = import.meta.env.DEV;
-    const studio = new Studio(renderer, new Figure(geometry));
+    const studio = new Studio(renderer, new Figure(asset, 1));
     await renderer.compileAsync(studio.scene, studio.camera);
     return studio;
   }
@@ -113,7 +113,8 @@ class Studio {
     const quaternions = poseToQuaternions(rotations);
     this.figure.show({ root: standingRoot(quaternions), quaternions });
     this.aim(headingOf(quaternions) + TURN);
-    this.renderer.setSize(size * 2, size * 2, false);
+    // Setting even the same size again would throw the picture's buffers away.
+    if (this.renderer.domElement.width !== size * 2) this.renderer.setSize(size * 2, size * 2, false);
     this.renderer.render(this.scene, this.camera);
     await this.drawn();
     return new Promise((resolve, reject) =>

@@ -2,7 +2,7 @@
 import { writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
-import { encodeFigure, PARTS, type HalfFigure } from '../figure-file';
+import { encodeLevels, PARTS, type HalfFigure } from '../figure-file';
 import { figureParts } from './body';
 import type { Shape } from './sdf';
 import { surface } from './surface';
@@ -25,43 +25,50 @@ const parts = figureParts();
 const surroundings = parts.flatMap(({ shape, symmetric }): Shape[] =>
   symmetric ? [shape] : [shape, (x, y, z) => shape(-x, y, z)],
 );
-const positions: number[] = [];
-const normals: number[] = [];
-const openness: number[] = [];
-const bones: number[] = [];
-const weights: number[] = [];
-const partOf: number[] = [];
-const triangles: number[] = [];
-for (const part of parts) {
-  const mesh = surface(part.shape, part.low, part.high, part.cell, part.symmetric);
-  const offset = partOf.length;
-  for (let v = 0; v < mesh.positions.length; v += 3) {
-    const p = mesh.positions.slice(v, v + 3);
-    const n = mesh.normals.slice(v, v + 3);
-    positions.push(...p);
-    normals.push(...n);
-    openness.push(opennessAt(surroundings, p, n));
-    partOf.push(PARTS.indexOf(part.name));
-    const row = weightsAt(part.name, p[0], p[1], p[2]);
-    for (let slot = 0; slot < 4; slot++) {
-      bones.push(row[slot]?.[0] ?? 0);
-      weights.push(row[slot]?.[1] ?? 0);
+
+/** The half figure at one level of detail. */
+function figureAt(level: number): HalfFigure {
+  const positions: number[] = [];
+  const normals: number[] = [];
+  const openness: number[] = [];
+  const bones: number[] = [];
+  const weights: number[] = [];
+  const partOf: number[] = [];
+  const triangles: number[] = [];
+  for (const part of parts) {
+    const mesh = surface(part.shape, part.low, part.high, part.cells[level], part.symmetric);
+    const offset = partOf.length;
+    for (let v = 0; v < mesh.positions.length; v += 3) {
+      const p = mesh.positions.slice(v, v + 3);
+      const n = mesh.normals.slice(v, v + 3);
+      positions.push(...p);
+      normals.push(...n);
+      openness.push(opennessAt(surroundings, p, n));
+      partOf.push(PARTS.indexOf(part.name));
+      const row = weightsAt(part.name, p[0], p[1], p[2]);
+      for (let slot = 0; slot < 4; slot++) {
+        bones.push(row[slot]?.[0] ?? 0);
+        weights.push(row[slot]?.[1] ?? 0);
+      }
     }
+    for (const index of mesh.triangles) triangles.push(index + offset);
+    console.log(
+      `level ${level}, ${part.name}: ${mesh.positions.length / 3} vertices, ${mesh.triangles.length / 3} triangles`,
+    );
   }
-  for (const index of mesh.triangles) triangles.push(index + offset);
-  console.log(`${part.name}: ${mesh.positions.length / 3} vertices, ${mesh.triangles.length / 3} triangles`);
+  if (positions.some(Number.isNaN)) throw new Error('The surface has vertices that are not numbers.');
+  return {
+    positions: new Float32Array(positions),
+    normals: new Float32Array(normals),
+    bones: new Uint8Array(bones),
+    weights: new Float32Array(weights),
+    openness: new Float32Array(openness),
+    parts: new Uint8Array(partOf),
+    triangles: new Uint32Array(triangles),
+  };
 }
-const half: HalfFigure = {
-  positions: new Float32Array(positions),
-  normals: new Float32Array(normals),
-  bones: new Uint8Array(bones),
-  weights: new Float32Array(weights),
-  openness: new Float32Array(openness),
-  parts: new Uint8Array(partOf),
-  triangles: new Uint32Array(triangles),
-};
-if (positions.some(Number.isNaN)) throw new Error('The surface has vertices that are not numbers.');
-const raw = encodeFigure(half);
+
+const raw = encodeLevels(parts[0].cells.map((_, level) => figureAt(level)));
 const packed = gzipSync(raw, { level: 9 });
 writeFileSync(fileURLToPath(new URL('../figure.bin', import.meta.url)), packed);
 console.log(`figure.bin: ${packed.length} bytes (${raw.length} unpacked)`);

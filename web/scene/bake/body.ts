@@ -12,7 +12,8 @@ export interface Part {
   shape: Shape;
   low: Vector;
   high: Vector;
-  cell: number;
+  /** For each level of detail, finest first, metres. */
+  cells: readonly number[];
   /** True for a part that the mirror plane cuts; else the part is a left one. */
   symmetric: boolean;
 }
@@ -251,17 +252,45 @@ const suit = (): Shape => {
 /** Every part of the figure. */
 export function figureParts(): Part[] {
   return [
-    { name: 'body', shape: suit(), low: [0, 0.05, -0.2], high: [0.73, 1.67, 0.16], cell: 0.012, symmetric: true },
-    { name: 'head', shape: headShape(), low: [0, 1.4, -0.14], high: [0.12, 1.8, 0.17], cell: 0.0072, symmetric: true },
-    { name: 'visor', shape: visor(), low: [0, 1.53, 0], high: [0.12, 1.74, 0.17], cell: 0.0043, symmetric: true },
+    {
+      name: 'body',
+      shape: suit(),
+      low: [0, 0.05, -0.2],
+      high: [0.73, 1.67, 0.16],
+      cells: [0.0125, 0.026],
+      symmetric: true,
+    },
+    {
+      name: 'head',
+      shape: headShape(),
+      low: [0, 1.4, -0.14],
+      high: [0.12, 1.8, 0.17],
+      cells: [0.0085, 0.015],
+      symmetric: true,
+    },
+    {
+      name: 'visor',
+      shape: visor(),
+      low: [0, 1.53, 0],
+      high: [0.12, 1.74, 0.17],
+      cells: [0.0052, 0.0095],
+      symmetric: true,
+    },
     {
       name: 'glove',
       shape: glove(),
       low: [0.64, 1.33, -0.16],
       high: [0.93, 1.48, 0.03],
-      cell: 0.005,
+      cells: [0.0056, 0.0105],
       symmetric: false,
     },
-    { name: 'shoe', shape: shoe(), low: [0.02, -0.02, -0.15], high: [0.22, 0.17, 0.2], cell: 0.0072, symmetric: false },
+    {
+      name: 'shoe',
+      shape: shoe(),
+      low: [0.02, -0.02, -0.15],
+      high: [0.22, 0.17, 0.2],
+      cells: [0.0078, 0.015],
+      symmetric: false,
+    },
   ];
 }
