@@ -2,6 +2,7 @@
 import { findBars } from './beats-bars';
 import { followTempo, normaliseEnvelope, periodAt, trackBeats, type TempoCurve } from './beats';
 import { preferFaster } from './beats-level';
+import { isBetweenBeats } from './beats-offbeat';
 import { PITCH_CLASSES } from './chroma';
 import { percentile } from './onset';
 import type { BeatGrid } from './types';
@@ -35,7 +36,8 @@ export function findGrid(evidence: GridEvidence): BeatGrid {
   const normal = normaliseEnvelope(all, rate);
   if (!all.some((v) => v > 0)) return { tempo: 120, beatsPerBar: 4, beats: [], downbeats: [] };
   const bands = [evidence.low, evidence.middle, evidence.high].map((band) => normaliseEnvelope(band, rate));
-  const { positions: tracked, curve } = chooseLevel(evidence, normal, followTempo([normal, ...bands], rate));
+  const { positions: loudest, curve } = chooseLevel(evidence, normal, followTempo([normal, ...bands], rate));
+  const tracked = isBetweenBeats(low, loudest, rate) ? trackBeats(bands[0], rate, curve) : loudest;
   const positions = trimmed(extended(tracked, all.length, curve, rate), evidence);
   const beats = positions.map((p) => p / rate);
   const peak = (values: ArrayLike<number>, p: number): number => {

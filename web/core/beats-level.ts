@@ -13,6 +13,8 @@ const WEIGHTS = { faster: 0.42, prior: 2.5, backbeat: 7, slowBackbeat: 7, subdiv
 /** A pulse is most likely near this tempo, beats per minute, and less by the square of the distance in octaves. */
 const PRIOR_CENTRE = 118;
 const PRIOR_OCTAVES = 0.8;
+/** Nobody taps a faster pulse than this, beats per minute: people take every second one. */
+const FASTEST_TAPPED = 190;
 /** Onsets count as on the pulse within this time, seconds. */
 const REACH = 0.035;
 
@@ -69,6 +71,7 @@ export function preferFaster(evidence: LevelEvidence, pulses: readonly number[])
   if (pulses.length < 4) return 0;
   const { rate, all } = evidence;
   const period = (pulses[pulses.length - 1] - pulses[0]) / (pulses.length - 1);
+  if (60 / period > FASTEST_TAPPED) return -1;
   const onPulse = strength(all, pulses, rate);
   const even = strength(all, parity(pulses, 0), rate);
   const odd = strength(all, parity(pulses, 1), rate);

@@ -1,0 +1,221 @@
+/**
+ * npm run bench: speed, sizes and memory of the built page in headless Chromium, beside Python doing the same work in the same run.
+ * Prints a Markdown table. `--quick` takes fewer runs; `--no-python` leaves the references out.
+ */
+import { execFileSync, spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { cpus, tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { chromium, type Page } from '@playwright/test';
+import { CHROMIUM_FLAGS, ensureChromium, installedChromium } from '../chromium.mjs';
+import { wav } from '../e2e/support/songs';
+import { asset, sizes } from './downloads';
+import { timeWindows } from './window';
+
+const top = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
+const dist = join(top, 'dist');
+const PORT = 4181;
+const ORIGIN = `http://127.0.0.1:${PORT}/`;
+const SECONDS = 180;
+const quick = process.argv.includes('--quick');
+const runs = quick ? 3 : 9;
+const spec = JSON.parse(readFileSync(join(top, 'web/core/spec.json'), 'utf8')) as {
+  model: { seedFrames: number; musicFrames: number };
+};
+
+const median = (values: number[]) => values.slice().sort((a, b) => a - b)[Math.floor(values.length / 2)];
+const rows: [string, string, string][] = [];
+const report = (what: string, value: string, beside = '') => {
+  rows.push([what, value, beside]);
+  console.error(`${what}: ${value}${beside ? ` (${beside})` : ''}`);
+};
+const megabytes = (bytes: number) => `${(bytes / 1e6).toFixed(1)} MB`;
+
+/** Highest resident memory of any process of this browser, bytes; only where /proc tells. */
+function peakMemory(marker: string): number {
+  if (!existsSync('/proc')) return 0;
+  let most = 0;
+  for (const pid of readdirSync('/proc').filter((name) => /^\d+$/.test(name))) {
+    try {
+      const command = readFileSync(`/proc/${pid}/cmdline`, 'utf8');
+      if (!command.includes('--type=renderer') || !command.includes(marker)) continue;
+      most = Math.max(
+        most,
+        1024 * Number(/VmHWM:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, 'utf8'))?.[1] ?? 0),
+      );
+    } catch {
+      // The process ended while we looked.
+    }
+  }
+  return most;
+}
+
+/** Seconds by Python, or undefined where its environment cannot be made. */
+function references(wavPath: string): { librosa_seconds: number; model_seconds: Record<string, number> } | undefined {
+  if (process.argv.includes('--no-python')) return undefined;
+  const python = join(top, 'export/.venv/bin/python');
+  try {
+    if (!existsSync(python)) execFileSync('python3', ['-m', 'venv', join(top, 'export/.venv')]);
+    execFileSync(python, ['-m', 'pip', 'install', '-q', '-r', 'export/requirements-bench.txt'], {
+      cwd: top,
+      stdio: 'inherit',
+    });
+    const args = [
+      'export/bench_reference.py',
+      '--wav',
+      wavPath,
+      '--model',
+      'public/models/light.onnx',
+      '--runs',
+      String(runs),
+    ];
+    return JSON.parse(execFileSync(python, args, { cwd: top, encoding: 'utf8' }).trim().split('\n').pop()!);
+  } catch (error) {
+    console.error(`No Python reference: ${(error as Error).message}`);
+    return undefined;
+  }
+}
+
+/** Durations of what the page measured under a name, milliseconds. */
+const measured = (page: Page, name: string) =>
+  page.evaluate((name) => performance.getEntriesByName(`posebeat:${name}`).map((entry) => entry.duration), name);
+
+async function benchWindows(marker: string, native: Record<string, number> | undefined): Promise<void> {
+  const browser = await chromium.launch({
+    executablePath: installedChromium(),
+    args: [...CHROMIUM_FLAGS, '--enable-unsafe-webgpu', `--crash-dumps-dir=${marker}`],
+  });
+  const url = (path: string) => ORIGIN + path;
+  for (const [backend, threads] of [
+    ['wasm', 1],
+    ['wasm', 2],
+    ['webgpu', 1],
+  ] as const) {
+    const page = await browser.newPage();
+    // A plain file of the site: isolated by its headers, with nothing of the app running.
+    await page.goto(url('models/manifest.json'));
+    const adapter = await page.evaluate(async () => {
+      const found = await navigator.gpu?.requestAdapter();
+      return found
+        ? [found.info.vendor, found.info.architecture, found.info.description].filter(Boolean).join(' ')
+        : '';
+    });
+    if (backend === 'webgpu' && !adapter) {
+      report('One window on WebGPU', 'no adapter here');
+      continue;
+    }
+    const flavour = backend === 'webgpu' ? 'jspi' : 'wasm';
+    const loader = backend === 'webgpu' ? /^ort-wasm-simd-threaded\.jspi-.*\.mjs$/ : /^ort-wasm-simd-threaded-.*\.mjs$/;
+    const binary =
+      backend === 'webgpu' ? /^ort-wasm-simd-threaded\.jspi-.*\.wasm$/ : /^ort-wasm-simd-threaded-.*\.wasm$/;
+    const times = await page.evaluate(timeWindows, {
+      ortUrl: url(asset(dist, new RegExp(`^ort\\.${flavour}\\.min-.*\\.js$`))),
+      mjsUrl: url(asset(dist, loader)),
+      wasmUrl: url(asset(dist, binary)),
+      modelUrl: url('models/light.onnx'),
+      backend,
+      threads,
+      ...spec.model,
+      runs: backend === 'webgpu' ? 1 : runs,
+    });
+    const reference = native?.[String(threads)];
+    const ratio = reference
+      ? `${(median(times) / 1000 / reference).toFixed(1)} x native (${(reference * 1000).toFixed(0)} ms)`
+      : '';
+    const where = backend === 'webgpu' ? `WebGPU, ${adapter}` : `WASM, ${threads} thread${threads > 1 ? 's' : ''}`;
+    report(
+      `One window (${spec.model.seedFrames} + ${spec.model.musicFrames} frames), ${where}`,
+      `${median(times).toFixed(0)} ms`,
+      backend === 'wasm' ? ratio : '',
+    );
+    await page.close();
+  }
+  await browser.close();
+}
+
+async function benchPage(marker: string, wavPath: string, librosa: number | undefined): Promise<void> {
+  const browser = await chromium.launch({
+    executablePath: installedChromium(),
+    args: [
+      ...CHROMIUM_FLAGS,
+      '--autoplay-policy=no-user-gesture-required',
+      '--enable-unsafe-swiftshader',
+      `--crash-dumps-dir=${marker}`,
+    ],
+  });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  const fetched: string[] = [];
+  page.on('request', (request) => {
+    const { origin, pathname } = new URL(request.url());
+    if (`${origin}/` === ORIGIN) fetched.push(pathname === '/' ? 'index.html' : decodeURIComponent(pathname.slice(1)));
+  });
+  await page.goto(ORIGIN);
+  await page.evaluate(() => window.posebeat.ready);
+  await page.waitForTimeout(3000);
+  const opening = new Set(fetched);
+  await page.evaluate(() => {
+    const tasks: number[] = [];
+    (window as unknown as { longTasks: number[] }).longTasks = tasks;
+    new PerformanceObserver((list) => tasks.push(...list.getEntries().map((entry) => entry.duration))).observe({
+      type: 'longtask',
+    });
+  });
+  await page.locator('input[type=file]').first().setInputFiles(wavPath);
+  await page.waitForFunction(() => performance.getEntriesByName('posebeat:whole-dance').length > 0, undefined, {
+    timeout: 300_000,
+  });
+  const [decode] = await measured(page, 'decode');
+  const [analyse] = await measured(page, 'analyse');
+  const [first] = await measured(page, 'first-dancing-frame');
+  const [whole] = await measured(page, 'whole-dance');
+  const tasks = await page.evaluate(() => (window as unknown as { longTasks: number[] }).longTasks);
+  const times = (SECONDS * 1000) / analyse;
+  report(
+    'Analysis of a 3-minute song in the worker',
+    `${times.toFixed(0)} x real time`,
+    librosa
+      ? `${(librosa / (analyse / 1000)).toFixed(2)} x librosa's speed (librosa ${(SECONDS / librosa).toFixed(0)} x real time)`
+      : '',
+  );
+  report('Decoding it', `${decode.toFixed(0)} ms`);
+  report('From drop to the first dancing frame', `${(first / 1000).toFixed(1)} s`);
+  report('From drop to the whole dance of 3 minutes', `${(whole / 1000).toFixed(1)} s`);
+  report(
+    'Main-thread tasks over 50 ms meanwhile',
+    String(tasks.length),
+    tasks.length ? `longest ${Math.max(...tasks).toFixed(0)} ms, software rendering` : '',
+  );
+  report('Peak memory of the page (resident)', megabytes(peakMemory(marker)));
+  for (const { name, raw, gzip, brotli } of [
+    sizes('Download: opening page with its demo', dist, opening),
+    sizes('Download: until the first dance to one’s own song', dist, fetched),
+  ]) {
+    report(name, `${megabytes(raw)} raw`, `gzip ${megabytes(gzip)}, brotli ${megabytes(brotli)}`);
+  }
+  await browser.close();
+}
+
+ensureChromium();
+if (!existsSync(join(dist, 'index.html'))) execFileSync('npm', ['run', 'build'], { cwd: top, stdio: 'inherit' });
+const folder = mkdtempSync(join(tmpdir(), 'posebeat-bench-'));
+const wavPath = join(folder, 'three-minutes.wav');
+writeFileSync(wavPath, wav({ seconds: SECONDS, tempo: 122, channels: 2 }));
+const python = references(wavPath);
+const server = spawn('npx', ['vite', 'preview', '--port', String(PORT), '--strictPort', '--host', '127.0.0.1'], {
+  cwd: top,
+  stdio: 'ignore',
+  detached: true,
+});
+try {
+  for (let i = 0; i < 100 && !(await fetch(ORIGIN).catch(() => undefined)); i++) {
+    await new Promise((resolve) => setTimeout(resolve, 200));
+  }
+  await benchWindows(folder, python?.model_seconds);
+  await benchPage(folder, wavPath, python?.librosa_seconds);
+} finally {
+  process.kill(-server.pid!);
+}
+console.log(`\nMeasured on ${cpus().length} cores (${cpus()[0].model.trim()}), medians of ${runs} windows.\n`);
+console.log('| What | Figure | Beside it |\n|---|---|---|');
+for (const row of rows) console.log(`| ${row.join(' | ')} |`);

@@ -1,0 +1,66 @@
+import { expect, type Page } from '@playwright/test';
+
+/** A small window: software rendering costs time by the pixel, and these tests do not look at the stage. */
+export const SMALL = { width: 640, height: 480 };
+
+/** Errors that the page prints or throws while a test runs; a test that expects none checks that this stays empty. */
+export function collectErrors(page: Page): string[] {
+  const errors: string[] = [];
+  page.on('pageerror', (error) => errors.push(`${error.name}: ${error.message}`));
+  page.on('console', (message) => {
+    if (message.type() === 'error') errors.push(message.text());
+  });
+  return errors;
+}
+
+/** Opens the page and waits until its API is ready. */
+export async function open(page: Page, query = ''): Promise<void> {
+  await page.goto(`./${query}`);
+  await page.waitForFunction(() => 'posebeat' in window);
+  await page.evaluate(() => window.posebeat.ready);
+}
+
+/** Loads a song through the public API; bytes travel as base64. */
+export async function loadSong(page: Page, bytes: Buffer, name = 'song.wav', type = 'audio/wav') {
+  return page.evaluate(
+    async ({ base64, name, type }) => {
+      const binary = atob(base64);
+      const array = Uint8Array.from(binary, (character) => character.charCodeAt(0));
+      return window.posebeat.loadSong(new File([array], name, { type }));
+    },
+    { base64: bytes.toString('base64'), name, type },
+  );
+}
+
+/** The message of the error that a call of the page's API is rejected with; fails when it is not rejected. */
+export async function rejection(call: Promise<unknown>): Promise<string> {
+  let message = '';
+  await call.then(
+    () => expect(true, 'the call should have been rejected').toBe(false),
+    (error: Error) => (message = error.message),
+  );
+  return message;
+}
+
+/** Four clearly different poses, 24 x 3 axis-angle, in plain radians: arms up, lunge, twist, arms out and bent knees. */
+export function fourPoses(): number[][] {
+  const pose = (turns: Record<number, [number, number, number]>): number[] => {
+    const rotations = new Array<number>(72).fill(0);
+    for (const [joint, turn] of Object.entries(turns))
+      turn.forEach((angle, axis) => (rotations[Number(joint) * 3 + axis] = angle));
+    return rotations;
+  };
+  return [
+    pose({ 16: [0, 0, 1.1], 17: [0, 0, -1.1], 3: [0, 0, 0.1] }),
+    pose({ 1: [-0.9, 0, 0.1], 4: [1.1, 0, 0], 2: [0.3, 0, -0.1], 5: [0.2, 0, 0], 16: [0, 0, -0.9], 17: [0, 0, 0.9] }),
+    pose({ 0: [0, 0.5, 0], 3: [0, 0.3, 0], 6: [0, 0.3, 0], 16: [0, -0.6, -0.6], 17: [0, -0.4, 0.9], 19: [0, 0.9, 0] }),
+    pose({
+      1: [-0.5, 0, 0.25],
+      2: [-0.5, 0, -0.25],
+      4: [0.9, 0, 0],
+      5: [0.9, 0, 0],
+      16: [0, 0, -0.2],
+      17: [0, 0, 0.2],
+    }),
+  ];
+}
