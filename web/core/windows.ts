@@ -2,8 +2,10 @@
  * From features and key poses to a whole dance of any length: windows that overlap, each seeded by the dance so far, blended, moved
  * through the exact keys and cleaned of sliding feet. The network itself is handed in, so this runs anywhere.
  */
+import { accentBeats } from './accent';
+import { beatPhase, type BeatPhase } from './beat-phase';
 import { cleanContacts, LOOKAHEAD, type ContactState } from './contact';
-import { correctToKeys, keysOnFrames, type FrameKey } from './correction';
+import { correctToKeys, keysOnFrames, softenCorners, type FrameKey } from './correction';
 import { fillerPoses, headingCurve } from './filler';
 import { smoothstep } from './interpolate';
 import { aboutY, fromLocalRows, headingOf, localFrameAt } from './localframe';
@@ -21,8 +23,8 @@ const POSE = JOINT_COUNT * 4;
 const { seedFrames } = spec.model;
 /** Frames that the network goes on past the song's end, so that the last beats have something to aim for. */
 const TAIL = spec.fps;
-/** A correction reaches this far from its key at most, frames; only what no later key can reach is cleaned and shown. */
-const SETTLE = Math.ceil(0.7 * spec.fps);
+/** A correction and the smoothing reach this far at most, frames; only what nothing later can reach is cleaned and shown. */
+const SETTLE = Math.ceil(0.7 * spec.fps) + 6;
 /** Frames at each end of a range made anew over which it goes over into the dance around it. */
 const RANGE_BLEND = 12;
 
@@ -143,7 +145,11 @@ async function generateWhole(
     total,
     all.map((key) => key.frame),
   );
-  const finish = finisher(request, keys);
+  const finish = finisher(
+    request,
+    keys,
+    all.map((key) => key.frame),
+  );
   for (let i = 0; i < plan.length; i++) {
     await addWindow(plan[i], i > 0 ? plan[i - 1] : undefined, raw, seedFrames, request.features, all, runWindow);
     hooks.signal?.throwIfAborted();
@@ -207,15 +213,17 @@ function mixFrame(target: Motion, t: number, source: Motion, s: number, share: n
 function finisher(
   request: GenerationRequest,
   keys: FrameKey[],
+  corners: number[],
 ): (raw: Motion, stable: number, last: boolean) => Motion {
   const { frames, options } = request;
   const corrected = emptyMotion(frames);
   const output = emptyMotion(frames);
+  const phase = beatPhase(request.grid);
   let state: ContactState | undefined;
   let done = 0;
   return (raw, stable, last) => {
     const readable = last ? frames : stable;
-    correctStretch(raw, corrected, done, readable, keys, options.keyStrength);
+    correctStretch(raw, corrected, done, readable, keys, corners, phase, options.keyStrength);
     const to = last ? frames : Math.max(done, stable - SETTLE - LOOKAHEAD);
     if (to > done) {
       const view: Motion = { ...corrected, frames: last ? frames : stable - SETTLE };
@@ -238,12 +246,18 @@ function correctStretch(
   done: number,
   readable: number,
   keys: FrameKey[],
+  corners: number[],
+  phase: BeatPhase,
   strength: number,
 ): void {
   // Keys reach SETTLE frames back and their residual is taken at their own frame, so start from where none is half applied.
   const from = Math.max(0, done - 2 * SETTLE);
-  const part = emptyMotion(readable - from);
-  copyFrames(raw, from + seedFrames, readable + seedFrames, part, 0);
+  const cut = sliceMotion(raw, from + seedFrames, readable + seedFrames);
+  softenCorners(
+    cut,
+    corners.map((frame) => frame - from),
+  );
+  const part = accentBeats(cut, phase, from);
   const inside = keys
     .filter((key) => key.frame >= from && key.frame < readable)
     .map((key) => ({ ...key, frame: key.frame - from }));
@@ -289,6 +303,13 @@ async function generateRange(
     hooks.onPartial?.(previous, (plan[i].end - from) / (total - from), i + 1);
   }
   const made = sliceMotion(raw, seedFrames, seedFrames + frames);
+  softenCorners(
+    made,
+    all.map((key) => key.frame).filter((frame) => frame < to),
+    from,
+    to,
+  );
+  copyFrames(accentBeats(made, beatPhase(request.grid)), from, to, made, from);
   joinRange(made, previous, from, to);
   correctToKeys(made, userKeys, options.keyStrength);
   const output = sliceMotion(previous, 0, frames);

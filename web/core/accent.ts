@@ -1,0 +1,25 @@
+/** Beats made visible: a dancer arrives on the beat and leaves it again, so the motion slows there and hurries in between. */
+import type { BeatPhase } from './beat-phase';
+import { emptyMotion, framePose, frameView } from './motion';
+import type { Motion } from './types';
+
+/** By how much the dance is slower on a beat than on average; it is that much faster half-way between two beats. */
+const DEPTH = 0.35;
+
+/**
+ * A dance with its time bent around the beats. Beats stay where they are; in between, no frame moves by more than DEPTH / (2 pi) of a beat
+ * (28 ms at 120 beats a minute), so keys off the beat are hardly touched and exact ones are restored afterwards.
+ * @param phase beats of the song
+ * @param start frame of the song at which the dance begins
+ */
+export function accentBeats(motion: Motion, phase: BeatPhase, start = 0): Motion {
+  const bent = emptyMotion(motion.frames);
+  const step = 1 / motion.fps;
+  for (let t = 0; t < motion.frames; t++) {
+    const seconds = (start + t) * step;
+    const rate = Math.max(0.2, (phase.at(seconds + step) - phase.at(seconds - step)) / (2 * step));
+    const shift = (DEPTH * Math.sin(2 * Math.PI * phase.at(seconds))) / (2 * Math.PI * rate);
+    framePose(motion, t * step - shift, frameView(bent, t));
+  }
+  return bent;
+}
