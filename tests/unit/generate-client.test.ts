@@ -51,6 +51,16 @@ describe('the client of the generate worker', () => {
     ]);
   });
 
+  it('loads anew for another backend, and back', async () => {
+    const { worker, client, loading } = started();
+    await loading;
+    void client.load({ ...options, backend: 'wasm' });
+    expect(worker.sent.at(-1)).toMatchObject({ type: 'load', backend: 'wasm' });
+    void client.load(options);
+    expect(worker.sent.at(-1)).toMatchObject({ type: 'load', backend: undefined });
+    expect(worker.sent).toHaveLength(3);
+  });
+
   it('can be asked again after a failed load', async () => {
     const worker = new FakeWorker();
     const client = new GenerateClient(() => worker as unknown as Worker);

@@ -46,6 +46,8 @@ export class GenerateClient {
   private readonly pending = new Map<number, Pending>();
   private loading: Promise<LoadedModel> | undefined;
   private loadJob = 0;
+  /** Backend and threads of the last load. */
+  private wanted = '';
 
   /**
    * @param createWorker for tests
@@ -62,13 +64,14 @@ export class GenerateClient {
   }
 
   /**
-   * Loads onnxruntime and the model and checks the backend. A second call waits for the first, unless it forces a backend or a number of
-   * threads.
+   * Loads onnxruntime and the model and checks the backend. A second call for the same backend and threads is the first.
    * @throws Error with a message for people
    */
   load(options: LoadOptions = {}): Promise<LoadedModel> {
-    if (this.loading && !options.backend && options.threads === undefined) return this.loading;
     const { backend, threads, onProgress } = options;
+    const wanted = `${backend ?? 'best'} ${threads ?? 'auto'}`;
+    if (this.loading && this.wanted === wanted) return this.loading;
+    this.wanted = wanted;
     const baseUrl = options.baseUrl ?? document.baseURI;
     const loading = new Promise<LoadedModel>((resolve, reject) => {
       const job = this.begin({
@@ -101,7 +104,7 @@ export class GenerateClient {
     signal?.throwIfAborted();
     const abortion = abortPromise(signal);
     try {
-      await Promise.race([this.load(), abortion.promise]);
+      await Promise.race([this.loading ?? this.load(), abortion.promise]);
       const job = ++this.lastJob;
       const result = new Promise<GenerateResult>((resolve, reject) => {
         this.pending.set(job, {
