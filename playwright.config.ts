@@ -3,6 +3,11 @@ import { CHROMIUM_FLAGS, installedChromium } from './tests/chromium.mjs';
 
 const port = 4179;
 
+const launch = (...flags: string[]) => ({
+  executablePath: installedChromium(),
+  args: [...CHROMIUM_FLAGS, '--autoplay-policy=no-user-gesture-required', ...flags],
+});
+
 export default defineConfig({
   testDir: 'tests/e2e',
   timeout: 120_000,
@@ -14,11 +19,28 @@ export default defineConfig({
   use: {
     baseURL: `http://127.0.0.1:${port}/`,
     viewport: { width: 1440, height: 900 },
-    launchOptions: {
-      executablePath: installedChromium(),
-      args: [...CHROMIUM_FLAGS, '--autoplay-policy=no-user-gesture-required', '--enable-unsafe-swiftshader'],
-    },
   },
+  // Software rendering costs more time than all else: what does not look at the stage runs without one, which the page must bear anyway.
+  projects: [
+    {
+      name: 'no stage',
+      testMatch: /(api|songs|generate)\.spec\.ts/,
+      use: { viewport: { width: 640, height: 480 }, launchOptions: launch('--disable-3d-apis') },
+    },
+    {
+      name: 'stage',
+      testMatch: /(page|timeline|stage)\.spec\.ts/,
+      use: { launchOptions: launch('--enable-unsafe-swiftshader') },
+    },
+    {
+      name: 'webgpu',
+      testMatch: /webgpu\.spec\.ts/,
+      use: {
+        viewport: { width: 640, height: 480 },
+        launchOptions: launch('--enable-unsafe-webgpu', '--enable-unsafe-swiftshader'),
+      },
+    },
+  ],
   webServer: {
     command: `npx vite preview --port ${port} --strictPort --host 127.0.0.1`,
     port,

@@ -1,16 +1,7 @@
 import { expect, test } from '@playwright/test';
-import { CHROMIUM_FLAGS, installedChromium } from '../chromium.mjs';
-import { loadSong, open, SMALL } from './support/page';
+import { loadSong, open } from './support/page';
 import { wav } from './support/songs';
 import { serveTinyModel } from './support/tiny';
-
-test.use({
-  viewport: SMALL,
-  launchOptions: {
-    executablePath: installedChromium(),
-    args: [...CHROMIUM_FLAGS, '--enable-unsafe-webgpu', '--enable-unsafe-swiftshader'],
-  },
-});
 
 test('WebGPU, when asked for, gives the dance that WASM gives; by itself a software adapter is not taken', async ({
   page,

@@ -8,6 +8,12 @@ interface Line {
   tone: 'key' | 'music' | 'motion';
 }
 
+/**
+ * Real dance, from calm to wild: the validation clips that move (export/evaluate.py measures them the same way). Jerk in m/s^3; speed of
+ * toes on the floor in m/s, which is not zero because people turn on them.
+ */
+const REAL_DANCE = { jerk: [55, 305], footSkate: [0.16, 0.36] } as const;
+
 const percent = (share: number) => `${Math.round(share * 100)}%`;
 
 /** Numbers with units, and a sentence that says whether they are good. */
@@ -46,9 +52,9 @@ export function reportLines(report: DanceReport): Line[] {
       name: 'Jerk',
       value: `${jerk.toFixed(0)} m/s³`,
       sentence:
-        jerk < 40
-          ? 'Very smooth, maybe too calm.'
-          : jerk < 400
+        jerk < REAL_DANCE.jerk[0]
+          ? 'Calmer than people dance.'
+          : jerk < REAL_DANCE.jerk[0]0
             ? 'As lively as people dance.'
             : 'Rougher than people dance.',
       tone: 'motion',
@@ -59,7 +65,11 @@ export function reportLines(report: DanceReport): Line[] {
       name: 'Foot sliding',
       value: `${(footSkate * 100).toFixed(0)} cm/s`,
       sentence:
-        footSkate < 0.1 ? 'Planted feet stay planted.' : footSkate < 0.25 ? 'Feet glide a little.' : 'Feet slide.',
+        footSkate < REAL_DANCE.footSkate[0]
+          ? 'Feet stand as firmly as those of calm dancers.'
+          : footSkate < REAL_DANCE.footSkate[1]
+            ? 'Feet turn and glide as dancers’ feet do.'
+            : 'Feet slide more than dancers’ feet do.',
       tone: 'motion',
     });
   }
