@@ -1,6 +1,6 @@
 import { PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { FIGURE_BOX, framingDistance, ResolutionGovernor, Spring } from '../../web/scene/framing';
+import { FIGURE_BOX, framingDistance, QualityGovernor, Spring } from '../../web/scene/framing';
 
 describe('framing', () => {
   it('holds the whole box in view, on wide screens and on phones, and no further away than needed', () => {
@@ -48,19 +48,32 @@ describe('follow spring', () => {
   });
 });
 
-describe('resolution', () => {
-  it('drops while frames are late, and stays at its floor', () => {
-    const governor = new ResolutionGovernor(2);
-    for (let i = 0; i < 450; i++) governor.sample(16.7);
+describe('quality', () => {
+  it('stays at its best on a screen of 50, 60 or 120 Hz', () => {
+    const governor = new QualityGovernor(2);
+    for (const milliseconds of [20, 16.7, 8.3])
+      for (let i = 0; i < 300; i++) expect(governor.sample(milliseconds)).toBe(false);
     expect(governor.ratio).toBe(2);
-    for (let i = 0; i < 45; i++) governor.sample(40);
-    expect(governor.ratio).toBeCloseTo(1.6, 9);
-    for (let i = 0; i < 2000; i++) governor.sample(40);
-    expect(governor.ratio).toBe(0.6);
   });
 
-  it('ignores the gap after the page was in the background', () => {
-    const governor = new ResolutionGovernor(1);
-    for (let i = 0; i < 500; i++) expect(governor.sample(5000)).toBeUndefined();
+  it('gives up pixels first when frames are a little late', () => {
+    const governor = new QualityGovernor(2);
+    while (!governor.sample(30));
+    expect(governor.ratio).toBeCloseTo(2 * Math.sqrt(18 / 30), 9);
+    expect(governor.detail).toBe(0);
+  });
+
+  it('gives up pixels and triangles within seconds when drawing crawls, and then leaves it', () => {
+    const governor = new QualityGovernor(1);
+    let elapsed = 0;
+    for (; elapsed < 20_000; elapsed += 400) governor.sample(400);
+    expect(governor.ratio).toBe(0.5);
+    expect(governor.detail).toBe(1);
+    expect(governor.sample(400)).toBe(false);
+  });
+
+  it('ignores the gap after the page was in the background, and one hiccup', () => {
+    const governor = new QualityGovernor(1);
+    for (let i = 0; i < 500; i++) expect(governor.sample(i % 50 === 7 ? 5000 : i % 50 === 9 ? 300 : 16)).toBe(false);
   });
 });

@@ -3,9 +3,10 @@ import {
   CircleGeometry,
   Color,
   Mesh,
-  MeshLambertMaterial,
   ShaderMaterial,
   SphereGeometry,
+  UniformsLib,
+  UniformsUtils,
   Vector4,
 } from 'three';
 import { jointIndex } from '../core/skeleton';
@@ -38,27 +39,19 @@ export class Floor {
     blockers: { value: this.blockers },
     glow: { value: 0 },
     horizon: { value: STAGE_COLOURS.horizon },
+    ground: { value: STAGE_COLOURS.floor },
   };
 
   constructor() {
-    const material = new MeshLambertMaterial({
-      color: STAGE_COLOURS.floor,
+    // Unlit but for the shadow: the lamps' pool of light is painted, which costs a fraction of lighting a screenful of pixels.
+    const material = new ShaderMaterial({
+      lights: true,
       transparent: true,
       dithering: true,
-      toneMapped: false,
+      uniforms: Object.assign(UniformsUtils.clone(UniformsLib.lights), this.uniforms),
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
     });
-    material.onBeforeCompile = (shader) => {
-      Object.assign(shader.uniforms, this.uniforms);
-      shader.vertexShader = shader.vertexShader
-        .replace('#include <common>', '#include <common>\nvarying vec3 vFloor;\nvarying vec2 vLocal;')
-        .replace(
-          '#include <begin_vertex>',
-          '#include <begin_vertex>\nvFloor = (modelMatrix * vec4(position, 1.0)).xyz;\nvLocal = position.xy;',
-        );
-      shader.fragmentShader = shader.fragmentShader
-        .replace('#include <common>', `#include <common>\n${DECLARATIONS}`)
-        .replace('#include <opaque_fragment>', `${SHADE}\n#include <opaque_fragment>`);
-    };
     this.mesh = new Mesh(new CircleGeometry(9, 64), material);
     this.mesh.rotation.x = -Math.PI / 2;
     this.mesh.receiveShadow = true;
@@ -90,7 +83,7 @@ export class Floor {
   /** Frees the floor. */
   dispose(): void {
     this.mesh.geometry.dispose();
-    (this.mesh.material as MeshLambertMaterial).dispose();
+    (this.mesh.material as ShaderMaterial).dispose();
   }
 }
 
@@ -125,35 +118,74 @@ export function createBackdrop(): Mesh {
   return mesh;
 }
 
-const DECLARATIONS = /* glsl */ `
-uniform vec4 blockers[${BLOCKERS.length}];
-uniform float glow;
-uniform vec3 horizon;
+const VERTEX = /* glsl */ `
+#include <common>
+#include <shadowmap_pars_vertex>
 varying vec3 vFloor;
 varying vec2 vLocal;
-float gridLine(vec2 at, float spacing, float width) {
-  vec2 cell = abs(fract(at / spacing - 0.5) - 0.5) * spacing;
+void main() {
+  #include <beginnormal_vertex>
+  #include <defaultnormal_vertex>
+  #include <begin_vertex>
+  #include <project_vertex>
+  #include <worldpos_vertex>
+  #include <shadowmap_vertex>
+  vFloor = worldPosition.xyz;
+  vLocal = position.xy;
+}`;
+
+const FRAGMENT = /* glsl */ `
+#include <common>
+#include <packing>
+#include <dithering_pars_fragment>
+#include <lights_pars_begin>
+#include <shadowmap_pars_fragment>
+#include <shadowmask_pars_fragment>
+uniform vec4 blockers[${BLOCKERS.length}];
+uniform float glow;
+uniform vec3 horizon, ground;
+varying vec3 vFloor;
+varying vec2 vLocal;
+
+float gridLine(vec2 at, float width) {
+  vec2 cell = abs(fract(at - 0.5) - 0.5);
   vec2 w = fwidth(at);
   vec2 line = 1.0 - smoothstep(vec2(width) - w * 0.5, vec2(width) + w, cell);
   // Lines thinner than a pixel fade instead of flickering.
   line *= min(vec2(1.0), 2.0 * width / w);
   return max(line.x, line.y);
-}`;
-
-const SHADE = /* glsl */ `
-float away = length(vLocal);
-// Share of the sky over a floor point that each ball hides (a ball over a plane: cosine times solid angle).
-float open = 1.0;
-for (int i = 0; i < ${BLOCKERS.length}; i++) {
-  vec3 d = blockers[i].xyz - vFloor;
-  float l2 = max(dot(d, d), blockers[i].w * blockers[i].w);
-  open *= 1.0 - 0.9 * clamp(max(d.y, 0.0) * blockers[i].w * blockers[i].w / (l2 * sqrt(l2)), 0.0, 1.0);
 }
-outgoingLight *= mix(0.3, 1.0, exp(-away * away * 0.3)) * mix(0.25, 1.0, open);
-float lines = 0.5 * gridLine(vFloor.xz, 1.0, 0.005);
-outgoingLight += vec3(0.11, 0.125, 0.16) * lines * exp(-away * away * 0.11) * open;
-float ring = exp(-pow((away - 0.55 - 0.75 * (1.0 - glow)) * 5.0, 2.0)) + 0.5 * exp(-away * away * 1.4);
-outgoingLight += vec3(0.16, 0.14, 0.34) * ring * glow * glow;
-// Far off the floor takes the backdrop's colour before it fades, so that no dark band is left between them.
-outgoingLight = mix(outgoingLight, horizon, smoothstep(1.2, 7.0, away));
-diffuseColor.a = 1.0 - smoothstep(4.0, 8.8, away);`;
+
+// Share of the sky over this point that the body leaves free (a ball over a plane hides cosine times solid angle).
+float openSky() {
+  float open = 1.0;
+  for (int i = 0; i < ${BLOCKERS.length}; i++) {
+    vec3 d = blockers[i].xyz - vFloor;
+    float r2 = blockers[i].w * blockers[i].w;
+    float l2 = max(dot(d, d), r2);
+    open *= 1.0 - 0.9 * clamp(d.y * r2 * inversesqrt(l2) / l2, 0.0, 1.0);
+  }
+  return open;
+}
+
+void main() {
+  float away2 = dot(vLocal, vLocal);
+  float away = sqrt(away2);
+  vec3 light = ground * mix(0.3, 1.0, exp(-away2 * 0.3)) * 1.35;
+  float lines = gridLine(vFloor.xz, 0.005) * exp(-away2 * 0.11);
+  if (away < 2.6) {
+    float open = openSky();
+    light *= mix(0.25, 1.0, open) * mix(0.5, 1.0, getShadowMask());
+    lines *= open;
+    if (glow > 0.0) {
+      float ring = exp(-pow2((away - 0.55 - 0.75 * (1.0 - glow)) * 5.0)) + 0.5 * exp(-away2 * 1.4);
+      light += vec3(0.11, 0.095, 0.23) * ring * glow * glow;
+    }
+  }
+  light += vec3(0.055, 0.0625, 0.08) * lines;
+  // Far off the floor takes the backdrop's colour before it fades, so that no dark band is left between them.
+  light = mix(light, horizon, smoothstep(1.2, 7.0, away));
+  gl_FragColor = vec4(light, 1.0 - smoothstep(4.0, 8.8, away));
+  #include <colorspace_fragment>
+  #include <dithering_fragment>
+}`;

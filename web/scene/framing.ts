@@ -47,34 +47,38 @@ export class Spring {
   }
 }
 
-/** Lowers the drawing resolution while frames are late. */
-export class ResolutionGovernor {
+/** Frame times, milliseconds: slower than `late` is worth less resolution, slower than `crawl` fewer triangles too. */
+const PACE = { aim: 18, late: 24, crawl: 60 };
+
+/** Lowers the drawing resolution and the level of detail while frames are late. */
+export class QualityGovernor {
+  /** Level of detail that the machine can draw, 0 the finest. */
+  detail = 0;
   private times: number[] = [];
+  private readonly floor: number;
 
-  /** @param full device pixels per CSS pixel at best quality */
-  constructor(
-    private readonly full: number,
-    public ratio = full,
-  ) {}
-
-  /**
-   * Takes the time between two drawn frames, milliseconds.
-   * @returns the new ratio when it should change
-   */
-  sample(milliseconds: number): number | undefined {
-    // A tab that slept says nothing about speed.
-    if (milliseconds > 250) return undefined;
-    this.times.push(milliseconds);
-    if (this.times.length < 45) return undefined;
-    const median = this.times.sort((a, b) => a - b)[22];
-    this.times = [];
-    // 24 ms: slower than 42 frames a second, so neither a 50 Hz nor a 60 Hz screen's own pace.
-    if (median < 24 || this.ratio <= this.floor) return undefined;
-    this.ratio = Math.max(this.floor, this.ratio * 0.8);
-    return this.ratio;
+  /** @param ratio device pixels per CSS pixel at best quality */
+  constructor(public ratio: number) {
+    this.floor = Math.min(0.5, ratio);
   }
 
-  private get floor(): number {
-    return Math.min(0.6, this.full);
+  /**
+   * Takes the time between two frames drawn one after the other, milliseconds.
+   * @returns whether quality has changed
+   */
+  sample(milliseconds: number): boolean {
+    // A tab that slept says nothing about speed.
+    if (milliseconds > 3000) return false;
+    this.times.push(milliseconds);
+    const elapsed = this.times.reduce((sum, time) => sum + time, 0);
+    // A second of frames, but never so few that one hiccup decides.
+    if (this.times.length < 5 || (this.times.length < 60 && elapsed < 1000)) return false;
+    const median = this.times.sort((a, b) => a - b)[this.times.length >> 1];
+    this.times = [];
+    // 24 ms: slower than 42 frames a second, so neither a 50 Hz nor a 60 Hz screen's own pace.
+    if (median < PACE.late || (this.ratio <= this.floor && this.detail > 0)) return false;
+    if (median > PACE.crawl || this.ratio <= this.floor) this.detail = 1;
+    this.ratio = Math.max(this.floor, this.ratio * Math.max(0.6, Math.sqrt(PACE.aim / median)));
+    return true;
   }
 }

@@ -6,7 +6,7 @@ import { Figure } from './figure';
 import { loadFigure } from './figure-asset';
 import { createBackdrop, Floor } from './floor';
 import { FollowCamera } from './follow-camera';
-import { ResolutionGovernor } from './framing';
+import { QualityGovernor } from './framing';
 import { Lights } from './lights';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
@@ -66,7 +66,7 @@ class WebGLStage implements Stage {
   private readonly view: FollowCamera;
   private readonly posing: Posing;
   private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
-  private readonly governor = new ResolutionGovernor(Math.min(devicePixelRatio || 1, 2));
+  private readonly governor = new QualityGovernor(Math.min(devicePixelRatio || 1, 2));
   private readonly callbacks = new Set<(now: number) => void>();
   private readonly watchers: { disconnect(): void }[] = [];
   private readonly draws: number[] = [];
@@ -253,8 +253,7 @@ class WebGLStage implements Stage {
     }
     const draw = this.dirty && this.seen && this.figure !== null;
     if (draw) {
-      const ratio = this.drewBefore ? this.governor.sample(elapsed) : undefined;
-      if (ratio !== undefined) this.lowerQuality();
+      if (this.drewBefore && this.governor.sample(elapsed)) this.lowerQuality();
       this.render();
       this.draws.push(now);
       while (now - this.draws[0] > 1000) this.draws.shift();
@@ -263,8 +262,7 @@ class WebGLStage implements Stage {
   };
 
   private lowerQuality(): void {
-    // Still late at well under full resolution: it is the triangles, not the pixels.
-    if (this.figure && this.governor.ratio < 0.7) this.figure.detail = 1;
+    if (this.figure) this.figure.detail = this.governor.detail;
     this.resize();
   }
 

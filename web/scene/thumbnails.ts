@@ -99,7 +99,7 @@ class Studio {
 
   static async open(): Promise<Studio> {
     const asset = await loadFigure();
-    const renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    const renderer = createRenderer();
     renderer.setClearColor(0, 0);
     renderer.toneMapping = NeutralToneMapping;
     renderer.toneMappingExposure = 1.15;
@@ -117,11 +117,14 @@ class Studio {
     if (this.renderer.domElement.width !== size * 2) this.renderer.setSize(size * 2, size * 2, false);
     this.renderer.render(this.scene, this.camera);
     await this.drawn();
-    return new Promise((resolve, reject) =>
-      this.renderer.domElement.toBlob((blob) =>
-        blob ? resolve(blob) : reject(new Error('The picture of the pose could not be made.')),
-      ),
-    );
+    const canvas = this.renderer.domElement as HTMLCanvasElement | OffscreenCanvas;
+    if (canvas instanceof HTMLCanvasElement)
+      return new Promise((resolve, reject) =>
+        canvas.toBlob((blob) =>
+          blob ? resolve(blob) : reject(new Error('The picture of the pose could not be made.')),
+        ),
+      );
+    return canvas.convertToBlob();
   }
 
   /** Resolves when the picture is drawn; reading it any earlier would hold up the page until it is. */
@@ -172,5 +175,15 @@ class Studio {
     Object.assign(this.camera, { left: -half, right: half, top: half, bottom: -half, near: 0.1, far: 14 });
     this.camera.updateProjectionMatrix();
     this.lights.group.rotation.y = azimuth - TURN;
+  }
+}
+
+function createRenderer(): WebGLRenderer {
+  const options = { antialias: true, alpha: true, preserveDrawingBuffer: true };
+  try {
+    // The picture of an element waits up to a second for the page to be idle; that of an offscreen canvas does not.
+    return new WebGLRenderer({ ...options, canvas: new OffscreenCanvas(128, 128) });
+  } catch {
+    return new WebGLRenderer(options);
   }
 }
