@@ -54,7 +54,7 @@ export function reportLines(report: DanceReport): Line[] {
       sentence:
         jerk < REAL_DANCE.jerk[0]
           ? 'Calmer than people dance.'
-          : jerk < REAL_DANCE.jerk[0]0
+          : jerk < REAL_DANCE.jerk[1]
             ? 'As lively as people dance.'
             : 'Rougher than people dance.',
       tone: 'motion',
