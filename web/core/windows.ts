@@ -7,10 +7,9 @@ import { beatPhase, type BeatPhase } from './beat-phase';
 import { cleanContacts, LOOKAHEAD, type ContactState } from './contact';
 import { correctToKeys, keysOnFrames, softenCorners, type FrameKey } from './correction';
 import { fillerPoses, headingCurve } from './filler';
-import { smoothstep } from './interpolate';
-import { aboutY, fromLocalRows, headingOf, localFrameAt } from './localframe';
+import { fromLocalRows, headingOf, localFrameAt } from './localframe';
 import { alignSigns, copyFrames, emptyMotion, sliceMotion } from './motion';
-import { multiply, rotateVector, slerp } from './rotation';
+import { blendInto, joinRange, turned } from './motion-blend';
 import { seedMotion } from './seed';
 import { JOINT_COUNT } from './skeleton';
 import { spec } from './spec';
@@ -25,8 +24,6 @@ const { seedFrames } = spec.model;
 const TAIL = spec.fps;
 /** A correction and the smoothing reach this far at most, frames; only what nothing later can reach is cleaned and shown. */
 const SETTLE = Math.ceil(0.7 * spec.fps) + 6;
-/** Frames at each end of a range made anew over which it goes over into the dance around it. */
-const RANGE_BLEND = 12;
 
 /** What a dance is made from. */
 export interface GenerationRequest {
@@ -114,19 +111,6 @@ function openingSeed(request: GenerationRequest, heading: number): Motion {
   return turned(seed, heading - headingOf(seed.quaternions.subarray(last * POSE, last * POSE + 4)), last);
 }
 
-/** A dance turned about Y, with the root of one frame brought to x = z = 0. */
-function turned(motion: Motion, angle: number, pivot: number): Motion {
-  const turn = aboutY(angle);
-  const [x, z] = [motion.root[pivot * 3], motion.root[pivot * 3 + 2]];
-  for (let t = 0; t < motion.frames; t++) {
-    const pelvis = motion.quaternions.subarray(t * POSE, t * POSE + 4);
-    multiply(turn, pelvis, pelvis);
-    const root = motion.root.subarray(t * 3, t * 3 + 3);
-    rotateVector(turn, [root[0] - x, root[1], root[2] - z], root);
-  }
-  return motion;
-}
-
 async function generateWhole(
   request: GenerationRequest,
   runWindow: RunWindow,
@@ -184,26 +168,6 @@ async function addWindow(
   const overlap = before ? before.end - span.start : 0;
   blendInto(made, 0, raw, start, overlap);
   copyFrames(made, overlap, made.frames, raw, start + overlap);
-}
-
-/** Goes over from what is in `target` to `source` within `frames` frames. */
-function blendInto(source: Motion, at: number, target: Motion, start: number, frames: number): void {
-  for (let i = 0; i < frames; i++) {
-    mixFrame(target, start + i, source, at + i, smoothstep((i + 1) / (frames + 1)));
-  }
-}
-
-/** Moves one frame of `target` by `share` towards a frame of `source`. */
-function mixFrame(target: Motion, t: number, source: Motion, s: number, share: number): void {
-  for (let k = 0; k < 3; k++) {
-    target.root[t * 3 + k] += share * (source.root[s * 3 + k] - target.root[t * 3 + k]);
-  }
-  for (let joint = 0; joint < JOINT_COUNT; joint++) {
-    const a = (t * JOINT_COUNT + joint) * 4;
-    const b = (s * JOINT_COUNT + joint) * 4;
-    const q = target.quaternions.subarray(a, a + 4);
-    slerp(q, source.quaternions.subarray(b, b + 4), share, q);
-  }
 }
 
 /**
@@ -320,24 +284,4 @@ async function generateRange(
     copyFrames(made, from, to, output, from);
   }
   return alignSigns(output);
-}
-
-/** Blends a range into the dance around it; its way over the floor is brought to where the old dance goes on. */
-function joinRange(made: Motion, previous: Motion, from: number, to: number): void {
-  const blend = Math.min(RANGE_BLEND, Math.floor((to - from) / 3));
-  if (to < previous.frames) {
-    const missing = [0, 2].map((k) => previous.root[to * 3 + k] - made.root[(to - 1) * 3 + k]);
-    const step = [0, 2].map((k) => previous.root[to * 3 + k] - previous.root[(to - 1) * 3 + k]);
-    for (let t = from; t < to; t++) {
-      const share = smoothstep((t - from + 1) / (to - from));
-      made.root[t * 3] += share * (missing[0] - step[0]);
-      made.root[t * 3 + 2] += share * (missing[1] - step[1]);
-    }
-    copyFrames(previous, to, previous.frames, made, to);
-  }
-  for (let i = 0; i < blend; i++) {
-    const share = 1 - smoothstep((i + 1) / (blend + 1));
-    if (from > 0) mixFrame(made, from + i, previous, from + i, share);
-    if (to < previous.frames) mixFrame(made, to - 1 - i, previous, to - 1 - i, share);
-  }
 }
