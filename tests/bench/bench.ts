@@ -167,7 +167,7 @@ async function benchPage(marker: string, wavPath: string, librosa: number | unde
   });
   const [decode] = await measured(page, 'decode');
   const [analyse] = await measured(page, 'analyse');
-  const [first] = await measured(page, 'first-dancing-frame');
+  const [first] = await measured(page, 'first-dance');
   const [whole] = await measured(page, 'whole-dance');
   const tasks = await page.evaluate(() => (window as unknown as { longTasks: number[] }).longTasks);
   const times = (SECONDS * 1000) / analyse;
@@ -179,7 +179,7 @@ async function benchPage(marker: string, wavPath: string, librosa: number | unde
       : '',
   );
   report('Decoding it', `${decode.toFixed(0)} ms`);
-  report('From drop to the first dancing frame', `${(first / 1000).toFixed(1)} s`);
+  report('From drop to the figure dancing to it', `${(first / 1000).toFixed(1)} s`);
   report('From drop to the whole dance of 3 minutes', `${(whole / 1000).toFixed(1)} s`);
   report(
     'Main-thread tasks over 50 ms meanwhile',

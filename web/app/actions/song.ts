@@ -4,6 +4,7 @@ import { seedMotion } from '../../core/seed';
 import type { BeatGrid, Features } from '../../core/types';
 import { isAbort, messageOf, type Context } from '../context';
 import { hashBytes } from '../hash';
+import { measureSince } from '../marks';
 import type { Song } from '../state';
 import { previewDance } from '../preview';
 import type { DanceActions } from './dance';
@@ -88,6 +89,7 @@ export function songActions(context: Context, dance: DanceActions) {
     job?.abort(new DOMException('Another song was opened.', 'AbortError'));
     const own = (job = new AbortController());
     const { signal } = own;
+    const opened = performance.now();
     const before = { song: state.song.value, dance: state.dance.value, document: history.present };
     let shown = false;
     state.songJob.value = { name: options.name, stage: 'reading', fraction: 0 };
@@ -98,7 +100,9 @@ export function songActions(context: Context, dance: DanceActions) {
       const hash = await hashBytes(bytes);
       signal.throwIfAborted();
       state.songJob.value = { name: options.name, stage: 'decoding', fraction: 0 };
+      const decoding = performance.now();
       const { buffer, duration } = await services.listener.decode(bytes, signal);
+      measureSince('decode', decoding);
       signal.throwIfAborted();
 
       const reference = { name: options.name, hash, duration, ...(options.url ? { url: options.url } : {}) };
@@ -130,6 +134,7 @@ export function songActions(context: Context, dance: DanceActions) {
         }
         context.sync();
         if (!options.start) return;
+        measureSince('first-dance', opened);
         player.setMuted(false);
         player.play();
       };
@@ -155,6 +160,7 @@ export function songActions(context: Context, dance: DanceActions) {
         signal,
       );
       signal.throwIfAborted();
+      measureSince('analyse', performance.now() - analysis.milliseconds);
       update({ features: analysis.features, grid: analysis.grid, waveform: analysis.waveform, complete: true });
       await lastPreview;
       await preview(analysis.grid, state.frames.value, signal);
@@ -203,9 +209,11 @@ export function songActions(context: Context, dance: DanceActions) {
 
     /** What a drop or the file chooser does: opens the song, plays it and makes a dance; errors become notices. */
     async dropSong(file: File): Promise<void> {
+      const dropped = performance.now();
       try {
         await open(file, { name: file.name, start: true });
         await dance.generateForPage();
+        if (isGenerated()) measureSince('whole-dance', dropped);
       } catch (error) {
         if (!isAbort(error)) context.notify('error', messageOf(error));
       }
