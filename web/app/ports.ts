@@ -1,6 +1,6 @@
 /** What the app needs from the rooms around it; `main.ts` plugs the real ones in, tests plug in their own. */
-import type { BeatGrid, Features, KeyPose, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
-import type { Backend, GenerateOptions } from '../workers/protocol';
+import type { BeatGrid, Features, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
+import type { Backend, DanceRequest } from '../workers/protocol';
 import type { ProjectDocument } from '../core/document';
 
 /** A song as the browser decoded it. */
@@ -40,18 +40,6 @@ export interface LoadProgress {
   bytes: number;
   totalBytes: number;
   cached: boolean;
-}
-
-/** A dance to be made. */
-export interface DanceRequest {
-  features: Features;
-  grid: BeatGrid;
-  frames: number;
-  keyPoses: KeyPose[];
-  seedClip: SeedClip;
-  options: GenerateOptions;
-  range?: { from: number; to: number };
-  previous?: Motion;
 }
 
 /** A finished dance. */

@@ -1,13 +1,13 @@
 /** The page's side of the generate worker. */
 import type { Motion } from '../core/types';
-import type { Backend, GenerateReply, GenerateRequest } from './protocol';
+import type { Backend, DanceRequest, GenerateReply, GenerateRequest } from './protocol';
 
 type Loaded = Omit<Extract<GenerateReply, { type: 'loaded' }>, 'type' | 'job'>;
 type Result = Omit<Extract<GenerateReply, { type: 'result' }>, 'type' | 'job'>;
 type Loading = Omit<Extract<GenerateReply, { type: 'loading' }>, 'type' | 'job'>;
 
 /** What a dance is made from. */
-export type GenerateJob = Omit<Extract<GenerateRequest, { type: 'generate' }>, 'type' | 'job'>;
+export type GenerateJob = DanceRequest;
 /** The backend in use and why. */
 export type LoadedModel = Loaded;
 /** A finished dance and how it was made. */

@@ -31,24 +31,25 @@ export interface GenerateOptions {
   cleanFeet: boolean;
 }
 
+/** A dance to be made. */
+export interface DanceRequest {
+  features: Features;
+  grid: BeatGrid;
+  /** ceil(duration x fps). */
+  frames: number;
+  keyPoses: KeyPose[];
+  seedClip: SeedClip;
+  options: GenerateOptions;
+  /** Frames [from, to) are made anew; the rest stays as in `previous`. */
+  range?: { from: number; to: number };
+  previous?: Motion;
+}
+
 /** Page -> generate worker. */
 export type GenerateRequest =
   /** Loads onnxruntime and the model, and checks the backend with one golden window. `backend` forces one. */
   | { type: 'load'; job: number; baseUrl: string; backend?: Backend; threads?: number }
-  | {
-      type: 'generate';
-      job: number;
-      features: Features;
-      grid: BeatGrid;
-      /** ceil(duration x fps). */
-      frames: number;
-      keyPoses: KeyPose[];
-      seedClip: SeedClip;
-      options: GenerateOptions;
-      /** Frames [from, to) are made anew; the rest stays as in `previous`. */
-      range?: { from: number; to: number };
-      previous?: Motion;
-    }
+  | ({ type: 'generate'; job: number } & DanceRequest)
   | { type: 'cancel'; job: number };
 
 /** Generate worker -> page. */

@@ -6,7 +6,8 @@ import { spec } from '../../../web/core/spec';
 import type { Features, SeedClip } from '../../../web/core/types';
 
 export type { Services } from '../../../web/app/context';
-export type { DanceRequest, DanceResult } from '../../../web/app/ports';
+export type { DanceResult } from '../../../web/app/ports';
+export type { DanceRequest } from '../../../web/workers/protocol';
 
 /** Length of every fake song, seconds. */
 export const SONG_SECONDS = 10;
