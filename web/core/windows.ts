@@ -33,6 +33,8 @@ export interface GenerationRequest {
   frames: number;
   keyPoses: readonly KeyPose[];
   seedClip: SeedClip;
+  /** The spec's seedFrames of dance just before frame 0, in the world, instead of the starting clip: a real dance goes on from there. */
+  opening?: Motion;
   options: {
     /** 0 = the network alone, 1 = keys are hit exactly. */
     keyStrength: number;
@@ -41,6 +43,8 @@ export interface GenerationRequest {
     /** Integer; the same seed gives the same dance. */
     seed: number;
     cleanFeet: boolean;
+    /** Poses of the starting clip on beats far from any key (default true); without them the network alone fills the gaps. */
+    fillers?: boolean;
   };
   /** Frames [from, to) are made anew; the rest stays as in `previous`. */
   range?: { from: number; to: number };
@@ -72,10 +76,13 @@ export async function generateMotion(
     : generateWhole(request, runWindow, hooks);
 }
 
-function check({ frames, features, range, previous }: GenerationRequest): void {
+function check({ frames, features, range, previous, opening }: GenerationRequest): void {
   if (!Number.isInteger(frames) || frames < 1) throw new Error('There is no song to dance to: drop a song first.');
   if (features.fps !== spec.fps || features.names.length !== spec.features.names.length) {
     throw new Error('The song was analysed by another version of Posebeat: drop it again.');
+  }
+  if (opening && opening.frames !== seedFrames) {
+    throw new Error(`The opening has ${opening.frames} frames; it needs exactly ${seedFrames}.`);
   }
   if (!range) return;
   if (!previous)
@@ -96,6 +103,7 @@ function networkKeys(
   start?: { frame: number; heading: number },
 ): FrameKey[] {
   const { seedClip: clip, grid, options } = request;
+  if (options.fillers === false) return keys;
   const heading = headingCurve(keys, start);
   const fillers = fillerPoses(
     { clip, grid, keys, from, to, variation: options.variation, seed: options.seed },
@@ -104,8 +112,9 @@ function networkKeys(
   return [...keys, ...fillers].sort((a, b) => a.frame - b.frame);
 }
 
-/** The clip on the grid for the frames before frame 0, facing where the dance begins. */
+/** The dance before frame 0: the given one as it stands, or the clip on the grid, facing where the dance begins. */
 function openingSeed(request: GenerationRequest, heading: number): Motion {
+  if (request.opening) return request.opening;
   const seed = seedMotion(request.seedClip, request.grid, seedFrames, { startTime: -seedFrames / spec.fps });
   const last = seedFrames - 1;
   return turned(seed, heading - headingOf(seed.quaternions.subarray(last * POSE, last * POSE + 4)), last);
