@@ -4,8 +4,9 @@
  */
 import { accentBeats } from './accent';
 import { beatPhase, type BeatPhase } from './beat-phase';
-import { cleanContacts, LOOKAHEAD, type ContactState } from './contact';
+import { cleanContacts } from './contact';
 import { correctToKeys, keysOnFrames, softenCorners, type FrameKey } from './correction';
+import { createCleaner, joinUncorrected, SETTLE, type UncorrectedDance } from './finish';
 import { fillerPoses, headingCurve } from './filler';
 import { fromLocalRows, headingOf, localFrameAt } from './localframe';
 import { alignSigns, copyFrames, emptyMotion, sliceMotion } from './motion';
@@ -22,8 +23,6 @@ const POSE = JOINT_COUNT * 4;
 const { seedFrames } = spec.model;
 /** Frames that the network goes on past the song's end, so that the last beats have something to aim for. */
 const TAIL = spec.fps;
-/** A correction and the smoothing reach this far at most, frames; only what nothing later can reach is cleaned and shown. */
-const SETTLE = Math.ceil(0.7 * spec.fps) + 6;
 
 /** What a dance is made from. */
 export interface GenerationRequest {
@@ -49,12 +48,19 @@ export interface GenerationRequest {
   /** Frames [from, to) are made anew; the rest stays as in `previous`. */
   range?: { from: number; to: number };
   previous?: Motion;
+  /** `previous` as `onUncorrected` gave it; without it a range has no uncorrected form to hand out. */
+  previousUncorrected?: UncorrectedDance;
 }
 
 /** How the caller follows a generation. */
 export interface GenerationHooks {
   /** The dance so far (frames [0, motion.frames) are final), the share that is done, and the windows run. */
   onPartial?(motion: Motion, fraction: number, windows: number): void;
+  /**
+   * The whole dance before key poses and floor had their say, once, at the end: what `finishDance` (finish.ts) finishes for another key
+   * strength without the network.
+   */
+  onUncorrected?(dance: UncorrectedDance): void;
   /** Checked between windows; the promise then rejects with the signal's reason. */
   signal?: AbortSignal;
 }
@@ -149,7 +155,10 @@ async function generateWhole(
     // A window that would begin after the song's end is not needed.
     const last = i + 1 === plan.length || plan[i + 1].start >= frames;
     const motion = finish(raw, last ? frames : plan[i + 1].start, last);
-    if (last) return motion;
+    if (last) {
+      hooks.onUncorrected?.(finish.uncorrected);
+      return motion;
+    }
     if (motion.frames > 0) hooks.onPartial?.(motion, motion.frames / frames, i + 1);
   }
   throw new Error(`A dance of ${frames} frames with seed ${options.seed} got no windows.`);
@@ -179,43 +188,37 @@ async function addWindow(
   copyFrames(made, overlap, made.frames, raw, start + overlap);
 }
 
+/** Finishes a dance a stretch at a time. */
+interface Finisher {
+  (raw: Motion, stable: number, last: boolean): Motion;
+  /** The dance so far, not yet moved through its keys. */
+  uncorrected: { motion: Motion; stretches: number[] };
+}
+
 /**
  * Turns the raw dance into the finished one, a stretch at a time: a finished frame never changes again, so what is shown while the rest
  * is generated is what stays.
  */
-function finisher(
-  request: GenerationRequest,
-  keys: FrameKey[],
-  corners: number[],
-): (raw: Motion, stable: number, last: boolean) => Motion {
+function finisher(request: GenerationRequest, keys: FrameKey[], corners: number[]): Finisher {
   const { frames, options } = request;
+  const uncorrected: Finisher['uncorrected'] = { motion: emptyMotion(frames), stretches: [] };
   const corrected = emptyMotion(frames);
-  const output = emptyMotion(frames);
   const phase = beatPhase(request.grid);
-  let state: ContactState | undefined;
-  let done = 0;
-  return (raw, stable, last) => {
-    const readable = last ? frames : stable;
-    correctStretch(raw, corrected, done, readable, keys, corners, phase, options.keyStrength);
-    const to = last ? frames : Math.max(done, stable - SETTLE - LOOKAHEAD);
-    if (to > done) {
-      const view: Motion = { ...corrected, frames: last ? frames : stable - SETTLE };
-      if (options.cleanFeet) {
-        const exact = keys.map((key) => key.frame);
-        state = cleanContacts(view, output, done, to, { keys: exact, keyStrength: options.keyStrength, state });
-      } else {
-        copyFrames(corrected, done, to, output, done);
-      }
-      done = to;
-    }
-    return alignSigns(sliceMotion(output, 0, done));
+  const cleaner = createCleaner(frames, { ...options, keys: keys.map((key) => key.frame) });
+  const finish = (raw: Motion, stable: number, last: boolean): Motion => {
+    const into = { uncorrected: uncorrected.motion, corrected };
+    correctStretch(raw, into, cleaner.done, last ? frames : stable, keys, corners, phase, options.keyStrength);
+    if (!last) uncorrected.stretches.push(stable);
+    cleaner.clean(corrected, stable, last);
+    return cleaner.result();
   };
+  return Object.assign(finish, { uncorrected });
 }
 
 /** Copies raw frames that are not finished yet and moves them through the keys; `raw` has the seed before frame 0. */
 function correctStretch(
   raw: Motion,
-  corrected: Motion,
+  into: { uncorrected: Motion; corrected: Motion },
   done: number,
   readable: number,
   keys: FrameKey[],
@@ -231,12 +234,13 @@ function correctStretch(
     corners.map((frame) => frame - from),
   );
   const part = accentBeats(cut, phase, from);
+  const keep = Math.max(0, done - from);
+  copyFrames(part, keep, part.frames, into.uncorrected, from + keep);
   const inside = keys
     .filter((key) => key.frame >= from && key.frame < readable)
     .map((key) => ({ ...key, frame: key.frame - from }));
   correctToKeys(part, inside, strength);
-  const keep = Math.max(0, done - from);
-  copyFrames(part, keep, part.frames, corrected, from + keep);
+  copyFrames(part, keep, part.frames, into.corrected, from + keep);
 }
 
 async function generateRange(
@@ -283,6 +287,9 @@ async function generateRange(
     to,
   );
   copyFrames(accentBeats(made, beatPhase(request.grid)), from, to, made, from);
+  if (request.previousUncorrected) {
+    hooks.onUncorrected?.(joinUncorrected(made, previous, request.previousUncorrected, from, to));
+  }
   joinRange(made, previous, from, to);
   correctToKeys(made, userKeys, options.keyStrength);
   const output = sliceMotion(previous, 0, frames);
