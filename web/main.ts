@@ -4,7 +4,7 @@ import { createApi } from './app/api';
 import { createAssets } from './app/assets';
 import { createEngine } from './app/engine';
 import { createListener } from './app/listener';
-import { createMeasure } from './app/report-client';
+import { createReporter } from './app/report-client';
 import { createStorage } from './app/storage';
 import { createStore } from './app/store';
 import { Player } from './audio/player';
@@ -29,7 +29,7 @@ const store = createStore(
     assets: createAssets(document.baseURI),
     forcedBackend,
   },
-  createMeasure(),
+  createReporter(),
 );
 const thumbnails = new Thumbnails();
 

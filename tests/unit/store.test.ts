@@ -2,15 +2,14 @@ import { describe, expect, it, vi } from 'vitest';
 import { Player } from '../../web/audio/player';
 import { createStore } from '../../web/app/store';
 import type { DanceRequest, DanceResult, Services } from './support/app';
-import { fakeServices, settled, SONG_SECONDS } from './support/app';
+import { fakeReporter, fakeServices, settled, SONG_SECONDS } from './support/app';
 
 const pose = (value = 0.1) => new Array<number>(72).fill(value);
-const report = { consistencyError: 0, smoothness: 1, jerk: 1, beatHitRate: [1, 1, 1, 1, 1], footSkate: 0 };
 
 async function page(change: (services: Services) => void = () => undefined) {
   const services = fakeServices(new Player(() => ({}) as AudioContext));
   change(services);
-  const store = createStore(services, () => Promise.resolve(report));
+  const store = createStore(services, fakeReporter());
   await store.start();
   return { store, services };
 }

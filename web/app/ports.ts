@@ -1,4 +1,5 @@
 /** What the app needs from the rooms around it; `main.ts` plugs the real ones in, tests plug in their own. */
+import type { UncorrectedDance } from '../core/finish';
 import type { BeatGrid, Features, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
 import type { Backend, DanceRequest } from '../workers/protocol';
 import type { ProjectDocument } from '../core/document';
@@ -45,6 +46,8 @@ export interface LoadProgress {
 /** A finished dance. */
 export interface DanceResult {
   motion: Motion;
+  /** What another key strength is made from without the network. */
+  uncorrected?: UncorrectedDance;
   backend: Backend;
   model: string;
   windows: number;
@@ -71,14 +74,22 @@ export interface Listener {
   analyse(buffer: AudioBuffer, hooks: AnalyseHooks, signal: AbortSignal): Promise<Analysis>;
 }
 
+/** A dance as it is kept for the next visit. */
+export interface SavedDance {
+  /** Of its song. */
+  hash: string;
+  motion: Motion;
+  uncorrected?: UncorrectedDance;
+  keyStrength?: number;
+}
+
 /** The browser's own storage; every method tolerates its absence by rejecting. */
 export interface Storage {
   saveDocument(document: ProjectDocument): Promise<void>;
-  /** The dance goes with the song of this hash. */
-  saveDance(hash: string, motion: Motion): Promise<void>;
+  saveDance(dance: SavedDance): Promise<void>;
   saveSong(hash: string, song: Blob): Promise<void>;
   loadSong(hash: string): Promise<Blob | null>;
-  load(): Promise<{ document: unknown; dance: { hash: string; motion: Motion } | null } | null>;
+  load(): Promise<{ document: unknown; dance: SavedDance | null } | null>;
 }
 
 /** The opening demo. */

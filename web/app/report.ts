@@ -1,11 +1,22 @@
 /** How good a dance is, in numbers. */
-import { beatHitRate, consistencyError, footSkate, meanJerk, smoothness } from '../core/metrics';
+import {
+  beatHitRate,
+  consistencyError,
+  footSkate,
+  jointSpeed,
+  meanJerk,
+  motionBeats,
+  smoothness,
+} from '../core/metrics';
+import { consistencyPerKey, type KeyError } from '../core/report-curves';
 import type { BeatGrid, KeyPose, Motion } from '../core/types';
 
 /** Measures of a dance; see core/metrics for each definition. */
 export interface DanceReport {
   /** Paper A, eq. 13: squared distance over the 144 rotation numbers, mean over the key poses; NaN without any. */
   consistencyError: number;
+  /** The same of every key pose. */
+  consistencyPerKey: KeyError[];
   /** Paper A, eq. 16. */
   smoothness: number;
   /** Mean over joints and frames, m/s^3. */
@@ -14,17 +25,28 @@ export interface DanceReport {
   beatHitRate: number[];
   /** Mean speed of feet on the floor, m/s. */
   footSkate: number;
+  /** Kinetic velocity: mean joint speed between each frame and the next, the pelvis held still, m/s; frames - 1 values. */
+  speed: Float32Array;
+  /** Its mean, m/s. */
+  meanSpeed: number;
+  /** Motion beats: the local minima of the kinetic velocity, seconds. */
+  motionBeats: number[];
 }
 
 /** Measures a dance. Takes some 100 ms for a long one, so the page asks the report worker. */
 export function measureDance(motion: Motion, keyPoses: readonly KeyPose[], grid: BeatGrid | null): DanceReport {
   const end = motion.frames / motion.fps;
   const beats = (grid?.beats ?? []).filter((beat) => beat < end);
+  const speed = jointSpeed(motion);
   return {
     consistencyError: consistencyError(motion, keyPoses),
+    consistencyPerKey: consistencyPerKey(motion, keyPoses),
     smoothness: smoothness(motion),
     jerk: meanJerk(motion),
     beatHitRate: [1, 2, 3, 4, 5].map((delta) => beatHitRate(motion, beats, delta)),
     footSkate: footSkate(motion),
+    speed,
+    meanSpeed: speed.length ? speed.reduce((sum, value) => sum + value, 0) / speed.length : NaN,
+    motionBeats: motionBeats(motion),
   };
 }

@@ -1,8 +1,23 @@
-/** Measures dances off the main thread. */
-import type { BeatGrid, KeyPose, Motion } from '../core/types';
-import { measureDance } from './report';
+/** Measures dances, finishes them at another key strength and plots the trade-off, off the main thread. */
+import { ReportDesk } from './report-desk';
+import type { ReportRequest } from './report-protocol';
 
-self.onmessage = (event: MessageEvent<{ job: number; motion: Motion; keyPoses: KeyPose[]; grid: BeatGrid | null }>) => {
-  const { job, motion, keyPoses, grid } = event.data;
-  postMessage({ job, report: measureDance(motion, keyPoses, grid) });
-};
+/** Lets messages in; a timer would wait 4 ms even for nothing. */
+function pause(milliseconds: number): Promise<void> {
+  return new Promise((resolve) => {
+    if (milliseconds > 0) {
+      setTimeout(resolve, milliseconds);
+      return;
+    }
+    const channel = new MessageChannel();
+    channel.port1.onmessage = () => {
+      channel.port1.close();
+      resolve();
+    };
+    channel.port2.postMessage(null);
+  });
+}
+
+const desk = new ReportDesk({ reply: (message, transfer) => self.postMessage(message, { transfer }), pause });
+
+self.onmessage = ({ data }: MessageEvent<ReportRequest>) => desk.handle(data);

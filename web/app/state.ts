@@ -3,6 +3,8 @@ import { computed, signal } from '@preact/signals';
 import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
 import type { Dials, ProjectDocument, SongReference } from '../core/document';
+import type { UncorrectedDance } from '../core/finish';
+import type { TradeOffPoint } from '../core/report-curves';
 import type { BeatGrid, Features, KeyPose, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
 import type { LoopRange } from '../audio/player';
 import type { DanceResult, LoadProgress, ModelInfo } from './ports';
@@ -41,7 +43,22 @@ export interface Dance {
   /** `preview` is the starting clip on the song's beats, shown until the model has something. */
   kind: 'demo' | 'preview' | 'generated';
   inputs: DanceInputs | null;
-  result: Omit<DanceResult, 'motion'> | null;
+  result: Omit<DanceResult, 'motion' | 'uncorrected'> | null;
+  /** What another key strength is made from without the network; where it is missing, only Generate changes the strength. */
+  uncorrected?: UncorrectedDance;
+  /** The strength that it is finished with, where that is known. */
+  keyStrength?: number;
+  /** True when the document's own dials made it, so that it is what they stand for. */
+  byDials?: boolean;
+}
+
+/** Consistency against smoothness of a dance, as far as it is worked out. */
+export interface TradeOff {
+  /** The dance that it is of. */
+  of: UncorrectedDance;
+  /** Ascending in strength. */
+  points: TradeOffPoint[];
+  complete: boolean;
 }
 
 /** What the generator is doing. */
@@ -75,6 +92,29 @@ export interface TimelineView {
   pixelsPerSecond: number;
 }
 
+/** What the inspector shows. */
+export type Panel = 'poses' | 'dance' | 'report';
+
+/**
+ * True when a dance made from `inputs` is what the document asks for.
+ * @param tunable the key strength of the dance follows its dial by itself
+ */
+export function madeFrom(
+  inputs: DanceInputs,
+  { keyPoses, grid, dials }: DanceInputs,
+  tunable: boolean,
+): boolean {
+  const { keyStrength, variation, seed, seedClip } = inputs.dials;
+  return (
+    inputs.keyPoses === keyPoses &&
+    inputs.grid === grid &&
+    variation === dials.variation &&
+    seed === dials.seed &&
+    seedClip === dials.seedClip &&
+    (tunable || keyStrength === dials.keyStrength)
+  );
+}
+
 /** Makes the signals of one page. */
 export function createState() {
   const document = signal<ProjectDocument>(createDocument());
@@ -97,6 +137,11 @@ export function createState() {
     partial: signal<Motion | null>(null),
     generation: signal<Generation>({ status: 'idle' }),
     report: signal<DanceReport | null>(null),
+    /** The key strength under the visitor's finger, before it is let go. */
+    strengthDraft: signal<number | null>(null),
+    tradeOff: signal<TradeOff | null>(null),
+    /** Kinetic velocity against the music (paper A, figure 9) on the timeline. */
+    curvesShown: signal(false),
     /** The beats in force: the visitor's corrections, else the analysis. */
     grid,
     duration,
@@ -106,10 +151,8 @@ export function createState() {
     ),
     /** True when poses, beats or settings changed since the dance was made. */
     stale: computed(() => {
-      const inputs = dance.value?.inputs;
-      if (!inputs) return true;
-      const now = document.value;
-      return inputs.keyPoses !== now.keyPoses || inputs.dials !== now.dials || inputs.grid !== now.grid;
+      const shown = dance.value;
+      return !shown?.inputs || !madeFrom(shown.inputs, document.value, shown.uncorrected !== undefined);
     }),
     playing: signal(false),
     time: signal(0),
@@ -125,7 +168,7 @@ export function createState() {
     cameraFollows: signal(true),
     /** Counts the wishes to see the figure whole again. */
     frameRequests: signal(0),
-    panel: signal<'poses' | 'dance'>('poses'),
+    panel: signal<Panel>('poses'),
     help: signal(false),
     notices: signal<Notice[]>([]),
     /** Read out by screen readers; not shown. */

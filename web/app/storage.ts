@@ -1,8 +1,7 @@
 /** The visitor's work in IndexedDB: one project, its dance, and the last few songs. */
 import { openDB, type DBSchema, type IDBPDatabase } from 'idb';
 import type { ProjectDocument } from '../core/document';
-import type { Motion } from '../core/types';
-import type { Storage } from './ports';
+import type { SavedDance, Storage } from './ports';
 
 interface Schema extends DBSchema {
   work: { key: 'document' | 'dance'; value: unknown };
@@ -29,8 +28,8 @@ export function createStorage(name = 'posebeat'): Storage {
     async saveDocument(document: ProjectDocument) {
       await (await database()).put('work', document, 'document');
     },
-    async saveDance(hash: string, motion: Motion) {
-      await (await database()).put('work', { hash, motion }, 'dance');
+    async saveDance(dance: SavedDance) {
+      await (await database()).put('work', dance, 'dance');
     },
     async saveSong(hash, song) {
       const db = await database();
@@ -48,7 +47,7 @@ export function createStorage(name = 'posebeat'): Storage {
       const db = await database();
       const document = await db.get('work', 'document');
       if (document === undefined) return null;
-      const dance = (await db.get('work', 'dance')) as { hash: string; motion: Motion } | undefined;
+      const dance = (await db.get('work', 'dance')) as SavedDance | undefined;
       return { document, dance: dance ?? null };
     },
   };

@@ -11,7 +11,8 @@ import { projectActions } from './actions/project';
 import { songActions } from './actions/song';
 import { viewActions } from './actions/view';
 import type { Context, Services } from './context';
-import type { Measure } from './report-client';
+import { tuningActions } from './actions/tuning';
+import type { Reporter } from './report-client';
 import { createState } from './state';
 
 /** Autosave waits until nothing changed for this long, milliseconds. */
@@ -20,7 +21,7 @@ const AUTOSAVE_DELAY = 600;
 const INFO_LIFETIME = 7000;
 
 /** Puts state and actions together. */
-export function createStore(services: Services, measure: Measure) {
+export function createStore(services: Services, reporter: Reporter) {
   const state = createState();
   const history = new History<ProjectDocument>(createDocument());
   let notices = 0;
@@ -57,7 +58,8 @@ export function createStore(services: Services, measure: Measure) {
     analysed: () => analysed(),
   };
 
-  const dance = danceActions(context, measure);
+  const dance = danceActions(context, reporter);
+  const tuning = tuningActions(context, reporter, dance);
   const keys = keyActions(context);
   const view = viewActions(context);
   const playback = playbackActions(context, view.revealTime);
@@ -139,6 +141,7 @@ export function createStore(services: Services, measure: Measure) {
   return {
     state,
     ...dance,
+    ...tuning,
     ...keys,
     ...playback,
     ...pose,

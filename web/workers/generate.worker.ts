@@ -1,4 +1,5 @@
 /** Makes dances off the main thread: one job at a time, cancelled between windows. */
+import type { UncorrectedDance } from '../core/finish';
 import { generateMotion } from '../core/windows';
 import { DanceEngine } from './onnx-engine';
 import type { GenerateReply, GenerateRequest } from './protocol';
@@ -49,6 +50,7 @@ async function generate(request: Generate, signal: AbortSignal): Promise<void> {
   const dancer = await engine;
   const begin = performance.now();
   let windows = 0;
+  let uncorrected: UncorrectedDance | undefined;
   const motion = await generateMotion(
     request,
     async (inputs) => {
@@ -60,6 +62,7 @@ async function generate(request: Generate, signal: AbortSignal): Promise<void> {
     },
     {
       signal,
+      onUncorrected: (made) => (uncorrected = made),
       onPartial: (part, fraction, done) => {
         // Parts are copies already, so their buffers can go; a range's part is the old dance and must stay.
         const transfer = part === request.previous ? [] : [part.root.buffer, part.quaternions.buffer];
@@ -69,10 +72,11 @@ async function generate(request: Generate, signal: AbortSignal): Promise<void> {
   );
   const milliseconds = performance.now() - begin;
   const { backend, model } = dancer.state;
-  reply({ type: 'result', job, motion, backend, model, windows, milliseconds }, [
-    motion.root.buffer,
-    motion.quaternions.buffer,
-  ]);
+  const given = [motion, ...(uncorrected ? [uncorrected.motion] : [])];
+  reply(
+    { type: 'result', job, motion, uncorrected, backend, model, windows, milliseconds },
+    given.flatMap(({ root, quaternions }) => [root.buffer, quaternions.buffer]),
+  );
 }
 
 async function work(request: Load | Generate, controller: AbortController): Promise<void> {

@@ -1,4 +1,5 @@
 /** Messages between the page and its workers: one typed union a direction. Every message carries the id of its job. */
+import type { UncorrectedDance } from '../core/finish';
 import type { BeatGrid, Features, KeyPose, Motion, SeedClip, Waveform } from '../core/types';
 
 export type Backend = 'webgpu' | 'wasm';
@@ -43,6 +44,8 @@ export interface DanceRequest {
   /** Frames [from, to) are made anew; the rest stays as in `previous`. */
   range?: { from: number; to: number };
   previous?: Motion;
+  /** The uncorrected form of `previous`. */
+  previousUncorrected?: UncorrectedDance;
 }
 
 /** Page -> generate worker. */
@@ -62,6 +65,8 @@ export type GenerateReply =
       type: 'result';
       job: number;
       motion: Motion;
+      /** What another key strength is made from without the network; a range has one only where the rest has. */
+      uncorrected?: UncorrectedDance;
       backend: Backend;
       model: string;
       windows: number;

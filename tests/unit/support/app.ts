@@ -1,6 +1,8 @@
 /** Rooms around the app that answer at once. */
 import type { Player } from '../../../web/audio/player';
 import type { Services } from '../../../web/app/context';
+import type { DanceReport } from '../../../web/app/report';
+import type { Reporter } from '../../../web/app/report-client';
 import { emptyMotion } from '../../../web/core/motion';
 import { spec } from '../../../web/core/spec';
 import type { Features, SeedClip } from '../../../web/core/types';
@@ -36,6 +38,28 @@ const clip: SeedClip = {
   poses: [new Array<number>(72).fill(0)],
   root: [[0, 0.96, 0]],
 };
+
+/** A report of nothing in particular. */
+export const fakeReport: DanceReport = {
+  consistencyError: 0,
+  consistencyPerKey: [],
+  smoothness: 1,
+  jerk: 1,
+  beatHitRate: [1, 1, 1, 1, 1],
+  footSkate: 0,
+  speed: new Float32Array(0),
+  meanSpeed: 0,
+  motionBeats: [],
+};
+
+/** A report worker that answers at once: finishing gives an empty dance as long as the other. */
+export function fakeReporter(): Reporter {
+  return {
+    measure: () => Promise.resolve(fakeReport),
+    finish: ({ motion }) => Promise.resolve({ motion: emptyMotion(motion.frames), report: fakeReport }),
+    plot: () => Promise.resolve(),
+  };
+}
 
 /** Services without demo, storage or sound. */
 export function fakeServices(player: Player): Services {

@@ -5,9 +5,9 @@ import type { Motion } from '../../core/types';
 import type { Backend } from '../../workers/protocol';
 import { isAbort, messageOf, type Context } from '../context';
 import type { DanceResult, ModelInfo } from '../ports';
-import type { Measure } from '../report-client';
+import type { Reporter } from '../report-client';
 import { measureDance, type DanceReport } from '../report';
-import type { DanceInputs } from '../state';
+import type { Dance, DanceInputs } from '../state';
 
 /** Settings of one dance; what is left out comes from the document's dials. */
 export interface GenerateCall {
@@ -30,9 +30,11 @@ export interface GenerateSummary {
 }
 
 /** Actions on dances. */
-export function danceActions(context: Context, measure: Measure) {
+export function danceActions(context: Context, reporter: Reporter) {
   const { state, services } = context;
   let running: AbortController | null = null;
+  /** The dance that the report is of. */
+  let measured: Motion | null = null;
   let loading: { backend: Backend | undefined; promise: Promise<ModelInfo> } | null = null;
 
   const cancel = (reason = 'Cancelled.') => {
@@ -123,7 +125,7 @@ export function danceActions(context: Context, measure: Measure) {
           keyPoses: [...inputs.keyPoses],
           seedClip,
           options: { keyStrength, variation, seed, cleanFeet: true },
-          ...(range ? { range, previous: danceSoFar() } : {}),
+          ...(range ? { range, previous: danceSoFar(), previousUncorrected: state.dance.value?.uncorrected } : {}),
         },
         (motion, fraction, windows) => {
           if (signal.aborted) return;
@@ -133,7 +135,9 @@ export function danceActions(context: Context, measure: Measure) {
         signal,
       );
       signal.throwIfAborted();
-      finish(result, inputs);
+      const { dials } = inputs;
+      const byDials = keyStrength === dials.keyStrength && variation === dials.variation && seed === dials.seed;
+      finish(result, { inputs, keyStrength, byDials });
       const { backend, model, windows, milliseconds, motion } = result;
       return { backend, model, frames: motion.frames, milliseconds, windows };
     } finally {
@@ -141,15 +145,28 @@ export function danceActions(context: Context, measure: Measure) {
     }
   }
 
-  function finish(result: DanceResult, inputs: DanceInputs): void {
-    const { motion, ...rest } = result;
-    state.dance.value = { motion, kind: 'generated', inputs, result: rest };
+  function finish(result: DanceResult, made: Pick<Dance, 'inputs' | 'keyStrength' | 'byDials'>): void {
+    const { motion, uncorrected, ...rest } = result;
+    state.dance.value = { motion, kind: 'generated', result: rest, uncorrected, ...made };
     state.partial.value = null;
-    state.report.value = null;
     context.announce('The dance is ready.');
-    const hash = state.song.value?.reference.hash;
-    if (hash) services.storage.saveDance(hash, motion).catch(() => undefined);
+    saveShown();
     void measureShown();
+  }
+
+  /** Keeps the dance on stage for the next visit. */
+  function saveShown(): void {
+    const hash = state.song.value?.reference.hash;
+    const dance = state.dance.value;
+    if (!hash || dance?.kind !== 'generated') return;
+    const { motion, uncorrected, keyStrength } = dance;
+    services.storage.saveDance({ hash, motion, uncorrected, keyStrength }).catch(() => undefined);
+  }
+
+  /** Shows what was measured of a dance. */
+  function showReport(motion: Motion, report: DanceReport): void {
+    measured = motion;
+    state.report.value = report;
   }
 
   /** Measures the dance on stage for the report panel. */
@@ -157,14 +174,20 @@ export function danceActions(context: Context, measure: Measure) {
     const dance = state.dance.value;
     if (!dance || dance.kind === 'preview') return;
     const keys = dance.inputs?.keyPoses ?? state.document.value.keyPoses;
-    const report = await measure(dance.motion, keys, state.grid.value);
-    if (state.dance.value === dance) state.report.value = report;
+    try {
+      const report = await reporter.measure(dance.motion, keys, state.grid.value);
+      if (state.dance.value?.motion === dance.motion) showReport(dance.motion, report);
+    } catch (error) {
+      if (!isAbort(error)) context.notify('error', messageOf(error));
+    }
   }
 
   return {
     loadModel,
     generate,
     measureShown,
+    saveShown,
+    showReport,
 
     /** What the Generate button does: errors become notices. */
     async generateForPage(range?: { start: number; end: number }): Promise<void> {
@@ -192,7 +215,8 @@ export function danceActions(context: Context, measure: Measure) {
       const dance = state.dance.value;
       if (!dance) throw new Error('There is no dance yet: call generate first.');
       const keys = dance.inputs?.keyPoses ?? state.document.value.keyPoses;
-      return state.report.value ?? measureDance(dance.motion, keys, state.grid.value);
+      const known = measured === dance.motion ? state.report.value : null;
+      return structuredClone(known ?? measureDance(dance.motion, keys, state.grid.value));
     },
 
     /** Changes a setting of the next dance: one step of undo. */

@@ -81,10 +81,11 @@ export function projectActions(context: Context, songs: SongActions, dance: Danc
     if (!blob) return false;
     const song = document.song;
     await songs.openSong(blob, { name: song.name, start: false, document });
-    const motion = saved.dance?.motion;
-    if (motion && saved.dance?.hash === song.hash && motion.frames === state.frames.value) {
+    if (saved.dance?.hash === song.hash && saved.dance.motion.frames === state.frames.value) {
+      const { motion, uncorrected, keyStrength } = saved.dance;
       const { keyPoses, grid, dials } = state.document.value;
-      state.dance.value = { motion, kind: 'generated', inputs: { keyPoses, grid, dials }, result: null };
+      const inputs = { keyPoses, grid, dials };
+      state.dance.value = { motion, kind: 'generated', inputs, result: null, uncorrected, keyStrength };
       void dance.measureShown();
     }
     return true;

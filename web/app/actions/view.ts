@@ -1,5 +1,6 @@
 /** Zoom and scroll of the timeline, panels, help. */
 import type { Context } from '../context';
+import type { Panel } from '../state';
 
 /** Closest zoom, pixels per second: a frame is 20 px wide. */
 export const MAX_ZOOM = 600;
@@ -74,7 +75,9 @@ export function viewActions({ state }: Context) {
       if (time < start || time > start + span * (1 - PAGE_MARGIN / 2)) set(time - span * PAGE_MARGIN, pixelsPerSecond);
     },
     toggleFollow: () => (state.followPlayhead.value = !state.followPlayhead.value),
-    showPanel: (panel: 'poses' | 'dance') => (state.panel.value = panel),
+    showPanel: (panel: Panel) => (state.panel.value = panel),
+    /** Kinetic velocity against the music on the timeline: shown or hidden. */
+    toggleCurves: (open = !state.curvesShown.value) => (state.curvesShown.value = open),
     toggleHelp: (open = !state.help.value) => (state.help.value = open),
     dismiss: (id: number) => (state.notices.value = state.notices.value.filter((notice) => notice.id !== id)),
   };
