@@ -17,6 +17,8 @@ import json
 import time
 from pathlib import Path
 
+import torch
+
 from baselines import NearestNeighbour
 from data import Clip, load_clips
 from evaluation import tables
@@ -54,13 +56,15 @@ def main() -> None:
     parser.add_argument("--spacings", type=float, nargs="+", default=(0.5, 1.0, 2.0), help="seconds between key poses")
     parser.add_argument("--split", choices=("val", "train"), default="val")
     parser.add_argument("--limit", type=int, default=0, help="at most this many clips (0: all)")
+    parser.add_argument("--threads", type=int, default=1, help="CPU threads")
     parser.add_argument("--out", type=Path, required=True, help="path without extension; .json and .md are written")
     args = parser.parse_args()
 
     started = time.monotonic()
+    torch.set_num_threads(args.threads)
     everything = load_clips(args.data, args.features, args.cache)
     clips = choose_clips(everything, args.split, args.limit)
-    run = torch_runner(args.checkpoint) if args.checkpoint else onnx_runner(args.onnx)
+    run = torch_runner(args.checkpoint) if args.checkpoint else onnx_runner(args.onnx, args.threads)
     # A training clip would find itself.
     nearest = NearestNeighbour([clip for clip in everything if clip.split == "train"]) if args.split == "val" else None
     result = {

@@ -27,9 +27,11 @@ def torch_runner(checkpoint: Path) -> Run:
     return run
 
 
-def onnx_runner(path: Path) -> Run:
+def onnx_runner(path: Path, threads: int = 1) -> Run:
     """Runs an ONNX file on onnxruntime's CPU backend."""
-    session = onnxruntime.InferenceSession(str(path), providers=["CPUExecutionProvider"])
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = threads
+    session = onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
 
     def run(inputs: dict[str, Tensor]) -> Tensor:
         return torch.from_numpy(session.run([OUTPUT_NAME], {name: inputs[name].numpy() for name in INPUT_NAMES})[0])
