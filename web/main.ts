@@ -16,6 +16,7 @@ import './style.css';
 import './style-layout.css';
 import './style-timeline.css';
 import './style-panels.css';
+import './style-report.css';
 
 const asked = new URLSearchParams(location.search).get('backend');
 const forcedBackend: Backend | undefined = asked === 'wasm' || asked === 'webgpu' ? asked : undefined;

@@ -99,11 +99,7 @@ export type Panel = 'poses' | 'dance' | 'report';
  * True when a dance made from `inputs` is what the document asks for.
  * @param tunable the key strength of the dance follows its dial by itself
  */
-export function madeFrom(
-  inputs: DanceInputs,
-  { keyPoses, grid, dials }: DanceInputs,
-  tunable: boolean,
-): boolean {
+export function madeFrom(inputs: DanceInputs, { keyPoses, grid, dials }: DanceInputs, tunable: boolean): boolean {
   const { keyStrength, variation, seed, seedClip } = inputs.dials;
   return (
     inputs.keyPoses === keyPoses &&

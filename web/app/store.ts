@@ -7,6 +7,7 @@ import { danceActions } from './actions/dance';
 import { keyActions } from './actions/keys';
 import { playbackActions } from './actions/playback';
 import { poseActions } from './actions/pose';
+import { pictureActions } from './actions/picture';
 import { projectActions } from './actions/project';
 import { songActions } from './actions/song';
 import { viewActions } from './actions/view';
@@ -142,6 +143,7 @@ export function createStore(services: Services, reporter: Reporter) {
     state,
     ...dance,
     ...tuning,
+    ...pictureActions(context, dance),
     ...keys,
     ...playback,
     ...pose,

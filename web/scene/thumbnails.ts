@@ -13,9 +13,11 @@ export interface Thumbnailer {
    * A transparent PNG of a pose, seen from its front left.
    * @param rotations 24 x 3 axis-angle, radians
    * @param size edge in CSS pixels; the picture has twice as many
+   * @param azimuth direction to the camera in the world, radians about Y, 0 = +Z: the same for all figures of a strip; by default the
+   * pose's own front left
    * @returns an object URL, which the caller revokes
    */
-  render(rotations: ArrayLike<number>, size: number): Promise<string>;
+  render(rotations: ArrayLike<number>, size: number, azimuth?: number): Promise<string>;
   dispose(): void;
 }
 
@@ -28,6 +30,7 @@ const SMALLEST_VIEW = 1.72;
 interface Job {
   rotations: ArrayLike<number>;
   size: number;
+  azimuth?: number;
   resolve: (url: string) => void;
   reject: (error: unknown) => void;
 }
@@ -46,10 +49,10 @@ class QueuedThumbnailer implements Thumbnailer {
   private busy = false;
   private disposed = false;
 
-  render(rotations: ArrayLike<number>, size: number): Promise<string> {
+  render(rotations: ArrayLike<number>, size: number, azimuth?: number): Promise<string> {
     if (this.disposed) return Promise.reject(new Error('The thumbnailer has been closed.'));
     return new Promise((resolve, reject) => {
-      this.queue.push({ rotations: Array.from(rotations), size, resolve, reject });
+      this.queue.push({ rotations: Array.from(rotations), size, azimuth, resolve, reject });
       void this.work();
     });
   }
@@ -68,7 +71,7 @@ class QueuedThumbnailer implements Thumbnailer {
         this.studio ??= Studio.open();
         const studio = await this.studio;
         await idle();
-        job.resolve(URL.createObjectURL(await studio.picture(job.rotations, job.size)));
+        job.resolve(URL.createObjectURL(await studio.picture(job.rotations, job.size, job.azimuth)));
       } catch (error) {
         job.reject(error);
       }
@@ -109,10 +112,10 @@ class Studio {
     return studio;
   }
 
-  async picture(rotations: ArrayLike<number>, size: number): Promise<Blob> {
+  async picture(rotations: ArrayLike<number>, size: number, azimuth?: number): Promise<Blob> {
     const quaternions = poseToQuaternions(rotations);
     this.figure.show({ root: standingRoot(quaternions), quaternions });
-    this.aim(headingOf(quaternions) + TURN);
+    this.aim(azimuth ?? headingOf(quaternions) + TURN);
     // Setting even the same size again would throw the picture's buffers away.
     if (this.renderer.domElement.width !== size * 2) this.renderer.setSize(size * 2, size * 2, false);
     this.renderer.render(this.scene, this.camera);

@@ -1,3 +1,6 @@
+import activity from 'lucide-static/icons/activity.svg?raw';
+import chevronLeft from 'lucide-static/icons/chevron-left.svg?raw';
+import chevronRight from 'lucide-static/icons/chevron-right.svg?raw';
 import check from 'lucide-static/icons/check.svg?raw';
 import dices from 'lucide-static/icons/dices.svg?raw';
 import download from 'lucide-static/icons/download.svg?raw';
@@ -6,6 +9,7 @@ import follow from 'lucide-static/icons/video.svg?raw';
 import frame from 'lucide-static/icons/scan.svg?raw';
 import folder from 'lucide-static/icons/folder-open.svg?raw';
 import help from 'lucide-static/icons/circle-question-mark.svg?raw';
+import imageDown from 'lucide-static/icons/image-down.svg?raw';
 import info from 'lucide-static/icons/info.svg?raw';
 import maximize from 'lucide-static/icons/move-horizontal.svg?raw';
 import music from 'lucide-static/icons/music.svg?raw';
@@ -33,7 +37,10 @@ import zoomIn from 'lucide-static/icons/zoom-in.svg?raw';
 import zoomOut from 'lucide-static/icons/zoom-out.svg?raw';
 
 const ICONS = {
+  activity,
   check,
+  chevronLeft,
+  chevronRight,
   close,
   dices,
   download,
@@ -42,6 +49,7 @@ const ICONS = {
   follow,
   frame,
   help,
+  imageDown,
   info,
   maximize,
   music,

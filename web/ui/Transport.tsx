@@ -11,7 +11,7 @@ const SPEEDS = [0.25, 0.5, 0.75, 1, 1.25, 1.5].filter((speed) => speed >= SPEED_
 /** Play, time, loop, speed, volume, zoom, Generate. */
 export function Transport() {
   const store = useStore();
-  const { playing, loop, speed, volume, muted, duration } = store.state;
+  const { playing, loop, speed, volume, muted, duration, curvesShown } = store.state;
   const off = duration.value === 0;
   return (
     <section class="transport" aria-label="Transport">
@@ -89,6 +89,17 @@ export function Transport() {
         onInput={(event) => store.setVolume(Number(event.currentTarget.value))}
       />
       <span class="spring" />
+      <button
+        type="button"
+        class="tool wide"
+        disabled={off}
+        aria-pressed={curvesShown.value}
+        aria-label="Motion against music"
+        title={tip('curves', 'Motion against music')}
+        onClick={() => store.toggleCurves()}
+      >
+        <Icon name="activity" />
+      </button>
       <div class="zoom-tools wide" role="group" aria-label="Zoom">
         <button
           type="button"

@@ -68,6 +68,13 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { id: 'zoom-in', keys: ['+', '='], label: 'Zoom in', group: 'View', run: (store) => store.zoom(1.5) },
   { id: 'zoom-out', keys: ['-'], label: 'Zoom out', group: 'View', run: (store) => store.zoom(1 / 1.5) },
   { id: 'fit', keys: ['0'], label: 'Show the whole song', group: 'View', run: (store) => store.fit() },
+  {
+    id: 'curves',
+    keys: ['V'],
+    label: 'Show motion against music on the timeline',
+    group: 'View',
+    run: (store) => store.toggleCurves(),
+  },
   { id: 'frame', keys: ['F'], label: 'Show the whole figure', group: 'View', run: (store) => store.frameFigure() },
   { id: 'help', keys: ['?'], label: 'Show the keys', group: 'View', run: (store) => store.toggleHelp() },
   {

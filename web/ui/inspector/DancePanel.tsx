@@ -1,7 +1,8 @@
 import { useStore } from '../store-context';
 import { Icon } from '../Icon';
 import { PosePicture } from '../thumbs';
-import { Report } from './Report';
+import { TakeStepper } from '../report/TakeStepper';
+import { TradeOffPlot } from '../report/TradeOffPlot';
 import { Slider } from './Slider';
 
 const strengthText = (value: number) =>
@@ -13,7 +14,7 @@ const strengthText = (value: number) =>
 const variationText = (value: number) =>
   value < 0.05 ? 'As plain as it gets.' : value < 0.5 ? 'Some life between your poses.' : 'The dancer improvises.';
 
-/** Settings of the next dance, and how good the last one is. */
+/** The dials: key strength moves the dance at hand, the others the next one. */
 export function DancePanel() {
   const store = useStore();
   const { document, loop, generation, dance } = store.state;
@@ -25,11 +26,13 @@ export function DancePanel() {
       <section class="block" aria-label="Settings">
         <Slider
           label="Key strength"
-          value={dials.keyStrength}
+          value={store.state.strengthDraft.value ?? dials.keyStrength}
           text={strengthText}
           tone="key"
-          onCommit={(value) => store.setDial('keyStrength', value)}
+          onPreview={(value) => store.previewStrength(value)}
+          onCommit={(value) => store.commitStrength(value)}
         />
+        <TradeOffPlot />
         <Slider
           label="Variation"
           value={dials.variation}
@@ -37,32 +40,7 @@ export function DancePanel() {
           tone="motion"
           onCommit={(value) => store.setDial('variation', value)}
         />
-        <div class="seed-row">
-          <label class="field inline">
-            <span>Take</span>
-            <input
-              type="number"
-              min={0}
-              max={2147483647}
-              step={1}
-              value={String(dials.seed)}
-              onChange={(event) => {
-                const seed = Number(event.currentTarget.value);
-                if (Number.isInteger(seed) && seed >= 0 && seed < 2 ** 31) store.setDial('seed', seed);
-                else event.currentTarget.value = String(dials.seed);
-              }}
-            />
-          </label>
-          <button
-            type="button"
-            class="secondary"
-            title="Another take: the same poses, another dance"
-            onClick={() => store.setDial('seed', 1 + Math.floor(Math.random() * 9999))}
-          >
-            <Icon name="dices" />
-            Roll
-          </button>
-        </div>
+        <TakeStepper />
         {range && dance.value && dance.value.kind !== 'preview' && (
           <button
             type="button"
@@ -75,7 +53,6 @@ export function DancePanel() {
           </button>
         )}
       </section>
-      <Report />
       <Engine />
     </>
   );

@@ -1,21 +1,32 @@
 import { useStore } from '../store-context';
+import type { Panel } from '../../app/state';
+import { ReportPanel } from '../report/ReportPanel';
 import { DancePanel } from './DancePanel';
 import { Library } from './Library';
 import { PoseEditor } from './PoseEditor';
 
-const TABS = [
+const TABS: readonly { id: Panel; label: string }[] = [
   { id: 'poses', label: 'Poses' },
   { id: 'dance', label: 'Dance' },
-] as const;
+  { id: 'report', label: 'Report' },
+];
 
-/** Poses to place, or the settings of the dance. */
+/** Poses to place, the settings of the dance, or how good it is. */
 export function Inspector() {
   const store = useStore();
   const { panel, draft } = store.state;
   const onKeyDown = (event: KeyboardEvent) => {
-    if (event.key !== 'ArrowLeft' && event.key !== 'ArrowRight') return;
+    const now = TABS.findIndex((tab) => tab.id === panel.value);
+    const targets: Record<string, number> = {
+      ArrowLeft: now - 1,
+      ArrowRight: now + 1,
+      Home: 0,
+      End: TABS.length - 1,
+    };
+    const target = targets[event.key];
+    if (target === undefined) return;
     event.preventDefault();
-    const next = panel.value === 'poses' ? 'dance' : 'poses';
+    const next = TABS[(target + TABS.length) % TABS.length].id;
     store.showPanel(next);
     document.getElementById(`tab-${next}`)?.focus();
   };
@@ -46,7 +57,15 @@ export function Inspector() {
         aria-labelledby={`tab-${panel.value}`}
         tabIndex={-1}
       >
-        {panel.value === 'dance' ? <DancePanel /> : draft.value ? <PoseEditor /> : <Library />}
+        {panel.value === 'dance' ? (
+          <DancePanel />
+        ) : panel.value === 'report' ? (
+          <ReportPanel />
+        ) : draft.value ? (
+          <PoseEditor />
+        ) : (
+          <Library />
+        )}
       </div>
     </aside>
   );

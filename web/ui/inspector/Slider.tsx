@@ -7,6 +7,8 @@ export function Slider(props: {
   value: number;
   text: (value: number) => string;
   tone: 'key' | 'motion';
+  /** While it is dragged. */
+  onPreview?: (value: number) => void;
   onCommit: (value: number) => void;
 }) {
   const id = useId();
@@ -30,7 +32,10 @@ export function Slider(props: {
         value={percent}
         style={{ '--fill': `${percent}%` }}
         aria-describedby={`${id}-text`}
-        onInput={(event) => (shown.value = Number(event.currentTarget.value) / 100)}
+        onInput={(event) => {
+          shown.value = Number(event.currentTarget.value) / 100;
+          props.onPreview?.(shown.value);
+        }}
         onChange={(event) => props.onCommit(Number(event.currentTarget.value) / 100)}
       />
       <p class="hint" id={`${id}-text`}>

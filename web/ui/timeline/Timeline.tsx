@@ -1,8 +1,9 @@
 import { useComputed, useSignalEffect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { useStore } from '../store-context';
+import { CurveLane } from './CurveLane';
 import { drawTimeline } from './draw';
-import { LANES_HEIGHT } from './geometry';
+import { LANES, LANES_HEIGHT } from './geometry';
 import { bindGestures } from './gestures';
 import { KeyLane } from './KeyLane';
 import { LoopHandles } from './LoopHandles';
@@ -69,10 +70,13 @@ export function Timeline() {
     });
   });
 
+  const curves = state.curvesShown.value;
+  const height = LANES_HEIGHT + (curves ? LANES.curves.height : 0);
   return (
     <div class="timeline-body">
-      <div class="timeline-surface" ref={box} style={{ height: `${LANES_HEIGHT}px` }}>
+      <div class="timeline-surface" ref={box} style={{ height: `${height}px` }}>
         <canvas ref={canvas} class="timeline-canvas" style={{ height: `${LANES_HEIGHT}px` }} aria-hidden="true" />
+        {curves && <CurveLane />}
         <KeyLane />
         <LoopHandles />
         <Playhead />

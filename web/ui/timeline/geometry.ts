@@ -10,8 +10,10 @@ export const LANES = {
   onset: { top: 84, height: 20 },
   keys: { top: 104, height: 72 },
   range: { top: 176, height: 8 },
+  /** Kinetic velocity against the music; shown on demand. */
+  curves: { top: 184, height: 96 },
 } as const;
-/** Height of all lanes. */
+/** Height of the lanes that are always shown. */
 export const LANES_HEIGHT = 184;
 /** Width of a key pose's thumbnail. */
 export const KEY_WIDTH = 52;

@@ -9,6 +9,9 @@ const DRAG_THRESHOLD = 4;
 /** Wheel units that double the scale. */
 const WHEEL_PER_DOUBLING = 240;
 
+/** A press on the music or on the curves goes there; one between key poses does not. */
+const seeks = (y: number) => y < LANES.keys.top || y >= LANES.curves.top;
+
 /** Binds seeking, loop ranges, panning and zooming. Returns the way to stop that. */
 export function bindGestures(element: HTMLElement, store: Store): () => void {
   const touches = new Map<number, { x: number; y: number }>();
@@ -24,7 +27,7 @@ export function bindGestures(element: HTMLElement, store: Store): () => void {
     press = { x: event.clientX, y: event.clientY, lane, moved: false, id: event.pointerId, touch };
     element.setPointerCapture(event.pointerId);
     if (!touch && lane === 'body') {
-      if (y < LANES.keys.top) {
+      if (seeks(y)) {
         wasPlaying = store.state.playing.value;
         store.seek(timeAtX(store, event.clientX));
       } else {
@@ -54,7 +57,7 @@ export function bindGestures(element: HTMLElement, store: Store): () => void {
       const grid = event.altKey ? null : store.state.grid.value;
       const [a, b] = [press.x, event.clientX].map((x) => nearestBeat(grid, timeAtX(store, x)));
       store.setLoop({ start: Math.min(a, b), end: Math.max(a, b) });
-    } else if (press.y - element.getBoundingClientRect().top < LANES.keys.top) {
+    } else if (seeks(press.y - element.getBoundingClientRect().top)) {
       store.seek(timeAtX(store, event.clientX));
     }
   };

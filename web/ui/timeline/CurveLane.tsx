@@ -1,0 +1,91 @@
+import { useComputed, useSignalEffect } from '@preact/signals';
+import { useRef } from 'preact/hooks';
+import spec from '../../core/spec.json';
+import { Icon } from '../Icon';
+import { tip } from '../shortcuts';
+import { useStore } from '../store-context';
+import { circlesFit, drawCurves, speedTop } from './draw-curves';
+import { LANES } from './geometry';
+
+/** Kinetic velocity and motion beats over the music's onsets and beats (paper A, figure 9), on the timeline's own time axis. */
+export function CurveLane() {
+  const store = useStore();
+  const { state } = store;
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const waiting = useRef(false);
+  const picture = useComputed(() => ({
+    view: state.view.value,
+    width: state.viewWidth.value,
+    duration: state.duration.value,
+    report: state.report.value,
+    features: state.song.value?.features ?? null,
+    grid: state.grid.value,
+    fps: state.dance.value?.motion.fps ?? spec.fps,
+  }));
+  useSignalEffect(() => {
+    void picture.value;
+    if (waiting.current) return;
+    waiting.current = true;
+    queueMicrotask(() => {
+      waiting.current = false;
+      if (canvas.current) drawCurves(canvas.current, picture.peek(), Math.min(devicePixelRatio || 1, 2));
+    });
+  });
+
+  const { report } = picture.value;
+  const far = useComputed(() => {
+    const { duration, report: now, view } = picture.value;
+    return now !== null && duration > 0 && !circlesFit(now.motionBeats.length, duration, view);
+  });
+  return (
+    <div
+      class="curve-lane"
+      role="group"
+      aria-label="Motion against music"
+      style={{ top: `${LANES.curves.top}px`, height: `${LANES.curves.height}px` }}
+    >
+      <canvas
+        ref={canvas}
+        class="timeline-canvas"
+        style={{ height: `${LANES.curves.height}px` }}
+        role="img"
+        aria-label={
+          report
+            ? `Speed of the limbs over the song, up to ${speedTop(report.speed).toFixed(2)} metres a second, with ${report.motionBeats.length} motion beats over the music’s onsets and beats.`
+            : 'Nothing is measured yet.'
+        }
+      />
+      <p class="curve-legend">
+        {report ? (
+          <>
+            <span class="curve-key speed">
+              Limb speed, 0–{speedTop(report.speed).toFixed(2)} <abbr title="metres per second">m/s</abbr>
+            </span>
+            {far.value ? (
+              <span>Zoom in for motion beats</span>
+            ) : (
+              <>
+                <span class="curve-key hit">Motion beat, on a beat</span>
+                <span class="curve-key miss">off the beat</span>
+              </>
+            )}
+            <span class="curve-key onset">Onsets</span>
+            <span class="curve-key beat">Beats</span>
+          </>
+        ) : (
+          <span>Generate a dance to see its motion against the music.</span>
+        )}
+      </p>
+      <button
+        type="button"
+        class="tool curve-close"
+        data-grab
+        aria-label="Hide motion against music"
+        title={tip('curves', 'Hide motion against music')}
+        onClick={() => store.toggleCurves(false)}
+      >
+        <Icon name="close" size={16} />
+      </button>
+    </div>
+  );
+}
