@@ -47,7 +47,8 @@ def frechet_distance(a: Tensor, b: Tensor) -> float:
     values, vectors = torch.linalg.eigh(cov_a)
     root = vectors * values.clamp_min(0).sqrt() @ vectors.T
     cross = torch.linalg.eigvalsh(root @ cov_b @ root).clamp_min(0).sqrt().sum()
-    return float(((means[0] - means[1]) ** 2).sum() + cov_a.trace() + cov_b.trace() - 2 * cross)
+    # Rounding makes the distance of a set to itself a little negative.
+    return max(0.0, float(((means[0] - means[1]) ** 2).sum() + cov_a.trace() + cov_b.trace() - 2 * cross))
 
 
 def power_values(motion: Tensor, positions: Tensor | None = None) -> Tensor:

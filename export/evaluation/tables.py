@@ -64,3 +64,28 @@ def paper_a(result: dict, seconds: str = "1", group: str = "all") -> str:
         rows.append([kind, "minima", *(f"{100 * values[f'hit{delta}']:.1f}" for delta in DELTAS)])
         rows.append([kind, "extrema", *(f"{100 * share:.1f}" for share in values["hit_extrema"])])
     return grid(["dance", "motion beats", *(str(delta) for delta in DELTAS)], rows)
+
+
+def endurance(result: dict) -> str:
+    """Long dances without keys. Pose distance: Mahalanobis over sqrt(dimensions) to the training poses (joints, pelvis height)."""
+    names = ("distance_first_minute", "distance_last_minute", "distance_largest", "freeze_s", "speed_first_minute", "speed_last_minute")
+    rows = [
+        [kind, song, *(number(figures[name]) for name in names)]
+        for kind, songs in result.items()
+        if isinstance(songs, dict)
+        for song, figures in songs.items()
+    ]
+    head = ["dance", "song, looped", "pose distance, first minute", "last minute", "largest", "longest freeze, s", "speed, first minute, m/s"]
+    note = f"Real training frames: mean {result['real_mean']}, 95 % below {result['real_95']}. {result['minutes']:g} minutes each."
+    return f"{note}\n\n{grid([*head, 'last minute'], rows)}"
+
+
+def diversity(result: dict) -> str:
+    """Distances between dances that differ in their seed only."""
+    rows = [
+        [f"{seconds} s", *(number(result[seconds][kind]) if kind in result[seconds] else "-" for kind in ("network", "shipped"))]
+        for seconds in ("1", "2", "4")
+        if seconds in result
+    ]
+    note = f"{result['seeds']} dances of {result['clip']}. Different real dances are {result['real, different dances']} cm apart."
+    return f"{note}\n\n{grid(['keys every', 'network, other seed motions', 'shipped, other seeds at variation 1'], rows)}"

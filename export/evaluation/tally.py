@@ -150,7 +150,7 @@ def row(tally: Tally, real: Tally) -> dict:
     values["PFD"] = dance_metrics.frechet_distance(torch.cat(real.poses), torch.cat(tally.poses)) * 1e4
     values["VFD"] = dance_metrics.frechet_distance(torch.cat(real.velocities), torch.cat(tally.velocities))
     values["PVar"] = _variance(tally.dances) * 1e4
-    row = {name: round(values.get(name, math.nan), 7 if name == "E_c" else 4) for name, _ in COLUMNS}
+    row = {name: round(values.get(name, math.nan), 10 if name == "E_c" else 4) for name, _ in COLUMNS}
     row["S_cv_median"] = round(statistics.median(tally.smoothness), 1)
     row["speed"], row["jerk"] = round(tally.mean("speed"), 4), round(tally.mean("jerk"), 2)
     row["hit_extrema"] = [round(tally.mean(f"hit{delta}_extrema"), 4) for delta in DELTAS]
