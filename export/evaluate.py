@@ -2,7 +2,7 @@
 
     python export/evaluate.py --data DATA --features FEATURES --onnx public/models/light.onnx --out export/results/light
 
-Writes OUT.json and OUT.md. --checkpoint FILE measures a training run instead of a shipped file.
+Writes OUT.json, OUT.md and pictures in OUT/ (these need requirements-evaluate.txt). --checkpoint FILE measures a training run instead of a shipped file.
 
 Key poses are the real poses at frames 0, s, 2s ... after the first 2 s of a clip, which are the seed. Errors are taken on the frames
 between keys, root-aligned. All measures are taken on the same pieces of at most 8 s, and are means weighted by frames.
@@ -28,9 +28,9 @@ from torch import Tensor
 from baselines import NearestNeighbour
 from data import Clip, load_clips
 from evaluation import bars, diversity, tables
-from evaluation.dances import Task, make_task
+from evaluation.dances import Task, make_task, rollout
 from evaluation.endurance import endurance
-from evaluation.runners import onnx_runner, torch_runner
+from evaluation.runners import Run, onnx_runner, torch_runner
 from evaluation.shipped import make_dances, order_of
 from evaluation.table import core_table
 from spec import FPS
@@ -57,6 +57,23 @@ def page_dances(model: Path, clips: list[Clip], spacings: tuple[float, ...]) -> 
     return lambda task: known.get((task.clip.name, task.spacing), {})
 
 
+def draw(folder: Path, result: dict, clips: list[Clip], run: Run, extra: Callable[[Task], dict[str, Tensor]] | None) -> list[str]:
+    """Writes the pictures -> their names; none, and a word about it, where matplotlib is missing."""
+    try:
+        import plots
+    except ImportError:
+        print("no pictures: pip install -r export/requirements-evaluate.txt")
+        return []
+    # The longest clip that has music.
+    dancing = [task for clip in clips if len(clip.beats) and (task := make_task(clip, FPS))]
+    task = max(dancing, key=lambda task: task.frames, default=None)
+    dances = {}
+    if task:
+        dances = {"real": task.real, "rollout": rollout(task, run)}
+        dances |= {name: dance for name, dance in (extra(task) if extra else {}).items() if name == bars.SHIPPED}
+    return [path.name for path in plots.for_evaluation(folder, result["table"], task, dances)]
+
+
 def markdown(result: dict) -> str:
     """All of the result that is text."""
     about = result["about"]
@@ -74,6 +91,8 @@ def markdown(result: dict) -> str:
         parts.append("## Windows chained without keys\n\n" + tables.endurance(result["endurance"]))
     if "diversity" in result:
         parts.append("## Diversity: mean joint distance between dances to the same music and keys, cm\n\n" + tables.diversity(result["diversity"]))
+    if result["pictures"]:
+        parts.append("## Pictures\n\n" + "\n\n".join(f"![{Path(path).stem}]({path})" for path in result["pictures"]))
     return "\n\n".join(parts) + "\n"
 
 
@@ -120,6 +139,7 @@ def main() -> None:
         result["endurance"] = endurance(clips, training, run, page)
         result["diversity"] = diversity.diversity(clips, run, page)
     result["bars"] = bars.bars(result["table"], result.get("endurance"))
+    result["pictures"] = [f"{args.out.name}/{name}" for name in draw(args.out, result, clips, run, extra)]
     result["about"]["seconds"] = round(time.monotonic() - started)
     args.out.parent.mkdir(parents=True, exist_ok=True)
     args.out.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
