@@ -55,7 +55,7 @@ export async function savePicture(store: Store, stretch: Stretch, clipId: string
     const strips: Strip[] = [];
     const dances: [Motion, string, string][] = [
       [first, nameOf(firstClip), 'the dance on stage'],
-      [second, nameOf(clipId), 'another start'],
+      [second, nameOf(clipId), 'another starting clip'],
     ];
     for (const [motion, name, note] of dances) {
       const figures: Strip['figures'] = [];

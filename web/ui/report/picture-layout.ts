@@ -12,9 +12,9 @@ export const MOST_FIGURES = 18;
 /** The picture, pixels; the strips' time axis runs from `left` to `right`. */
 export const PAGE = {
   width: 2400,
-  height: 1204,
+  height: 1172,
   margin: 72,
-  left: 340,
+  left: 372,
   right: 2304,
   music: { top: 168, height: 170 },
   strips: [

@@ -126,7 +126,7 @@ function drawBeats(brush: Brush, { grid, range }: PictureContent): void {
 
 function drawMusic(brush: Brush, { range, waveform, features }: PictureContent): void {
   const { top, height } = PAGE.music;
-  label(brush, PAGE.music, 'Music', 'loudness and onsets', COLOURS.music);
+  label(brush, PAGE.music, 'Music', 'waveform, onsets', COLOURS.music);
   const middle = top + height * 0.42;
   const seconds = (range.end - range.start) / (PAGE.right - PAGE.left);
   if (waveform) {
@@ -169,8 +169,9 @@ function label(brush: Brush, { top, height }: Box, name: string, note: string, c
   const x = PAGE.margin + 24;
   brush.fillStyle = colour;
   brush.fillRect(PAGE.margin, top + 16, 5, height - 32);
-  write(brush, fit(brush, name, `620 30px ${FAMILY}`, 216), x, top + height / 2 - 4, 30, COLOURS.text, 620);
-  write(brush, fit(brush, note, `400 22px ${FAMILY}`, 216), x, top + height / 2 + 30, 22, COLOURS.muted);
+  const room = PAGE.left - x - 48;
+  write(brush, fit(brush, name, `620 28px ${FAMILY}`, room), x, top + height / 2 - 4, 28, COLOURS.text, 620);
+  write(brush, fit(brush, note, `400 21px ${FAMILY}`, room), x, top + height / 2 + 30, 21, COLOURS.muted);
 }
 
 function drawStrip(brush: Brush, { range }: PictureContent, strip: Strip, box: Box): void {
