@@ -16,6 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+import dance_metrics
 import metrics
 from export_onnx import compress, run_onnx, to_onnx, write_arrays
 from loss import key_weight
@@ -129,6 +130,7 @@ def measures() -> dict:
     quaternions = matrix_to_quaternion(metrics.matrices_of(motion))
     keys = quaternion_to_axis_angle(matrix_to_quaternion(metrics.matrices_of(other[key_frames])))
     local = to_local_frame(motion, 30)
+    found = metrics.motion_beats(motion)
     return {
         "tolerance": 1e-4,
         "fps": FPS,
@@ -143,12 +145,26 @@ def measures() -> dict:
         "motionBeatFrames": metrics.motion_beats(motion).tolist(),
         "beatHitRate": [metrics.beat_hit_rate(motion, beats, d) for d in range(1, 6)],
         "footSkate": metrics.foot_skate(motion),
+        "motionExtremaFrames": metrics.motion_beats(motion, extrema=True).tolist(),
+        "freeze": {"threshold": 0.6, "seconds": metrics.longest_freeze(metrics.mean_joint_speed(metrics.joints(motion)), 0.6)},
+        "other": {
+            "quaternions": rounded(matrix_to_quaternion(metrics.matrices_of(other)).flatten(1), 7),
+            "root": rounded(other[:, ROTATION_SIZE:], 7),
+        },
+        "npss": dance_metrics.npss(motion, other),
+        "poseFrechet": dance_metrics.frechet_distance(*(dance_metrics.pose_vectors(m) for m in (motion, other))),
+        "velocityFrechet": dance_metrics.frechet_distance(*(dance_metrics.velocity_vectors(m) for m in (motion, other))),
+        "positionVariance": dance_metrics.position_variance([metrics.joints(m) for m in (motion, other, motion.roll(20, 0))]),
+        "beatConsistency": dance_metrics.beat_consistency(found, beats),
         "localFrame": {"seedFrames": 30, "firstFrame": rounded(local[0]), "lastFrame": rounded(local[-1])},
         "notes": {
             "smoothness": "sd / |mean| over all frame differences of the 147 numbers (6D + root), population sd",
             "meanJerk": "mean length of third differences x fps^3 of root-aligned joint positions",
             "motionBeats": "strict local minima (v[t] < v[t-1], v[t] <= v[t+1]) of mean root-aligned joint speed; v[t] is between "
             "frames t and t + 1, so the beat is at t + 0.5",
+            "other": "npss, poseFrechet and velocityFrechet compare the dance with the other one",
+            "positionVariance": "over the dance, the other one, and the dance rolled by 20 frames",
+            "beatConsistency": "sigma 0.05 s",
             "footSkate": "mean horizontal toe-joint speed from t - 1 to t over toes with y < toeHeight + 0.03 at t",
         },
     }

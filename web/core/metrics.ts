@@ -105,13 +105,18 @@ export function jointSpeed(motion: Motion): Float32Array {
   return speed;
 }
 
-/** Motion beats: seconds of the local minima of the mean joint speed. */
-export function motionBeats(motion: Motion): number[] {
+/**
+ * Motion beats: seconds of the local minima of the mean joint speed.
+ * @param extrema with the maxima too: paper A says "local extrema" (section 4.2.4), paper B minima
+ */
+export function motionBeats(motion: Motion, extrema = false): number[] {
   const speed = jointSpeed(motion);
   const beats: number[] = [];
   for (let i = 1; i + 1 < speed.length; i++) {
-    // speed[i] is the speed between frames i and i + 1, so the minimum lies halfway between them.
-    if (speed[i] < speed[i - 1] && speed[i] <= speed[i + 1]) beats.push((i + 0.5) / motion.fps);
+    const low = speed[i] < speed[i - 1] && speed[i] <= speed[i + 1];
+    const high = speed[i] > speed[i - 1] && speed[i] >= speed[i + 1];
+    // speed[i] is the speed between frames i and i + 1, so the turning point lies halfway between them.
+    if (low || (extrema && high)) beats.push((i + 0.5) / motion.fps);
   }
   return beats;
 }
