@@ -235,7 +235,7 @@ test('the picture of two dances is saved; document and dance stay as they are', 
   await page.getByRole('button', { name: 'Save picture' }).click();
   await page.getByTitle('Stop the picture').click();
   await expect(page.getByRole('button', { name: 'Save picture' })).toBeEnabled();
-  await expect(page.locator('.notice.error')).toHaveCount(0);
+  await expect(page.locator('.notice.error', { hasText: /picture/i })).toHaveCount(0);
 });
 
 for (const [name, viewport] of [
