@@ -65,12 +65,18 @@ export function CurveLane() {
               <span>Zoom in for motion beats</span>
             ) : (
               <>
-                <span class="curve-key hit">Motion beat, on a beat</span>
-                <span class="curve-key miss">off the beat</span>
+                <span class="curve-key hit">
+                  <span>
+                    <span class="wide">Motion beat, </span>on a beat
+                  </span>
+                </span>
+                <span class="curve-key miss">
+                  off<span class="wide"> the beat</span>
+                </span>
               </>
             )}
-            <span class="curve-key onset">Onsets</span>
-            <span class="curve-key beat">Beats</span>
+            <span class="curve-key onset wide">Onsets</span>
+            <span class="curve-key beat wide">Beats</span>
           </>
         ) : (
           <span>Generate a dance to see its motion against the music.</span>
