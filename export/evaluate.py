@@ -2,7 +2,8 @@
 
     python export/evaluate.py --data DATA --features FEATURES --onnx public/models/light.onnx --out export/results/light
 
-Writes OUT.json, OUT.md and pictures in OUT/ (these need requirements-evaluate.txt). --checkpoint FILE measures a training run instead of a shipped file.
+Writes OUT.json, OUT.md and pictures in OUT/ (these need requirements-evaluate.txt). --checkpoint FILE measures a training run
+instead of a shipped file; a checkpoint of train_inbetween.py is measured without a transformer.
 
 Key poses are the real poses at frames 0, s, 2s ... after the first 2 s of a clip, which are the seed. Errors are taken on the frames
 between keys, root-aligned. All measures are taken on the same pieces of at most 8 s, and are means weighted by frames.
@@ -17,6 +18,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import time
 from collections.abc import Callable
@@ -90,7 +92,8 @@ def markdown(result: dict) -> str:
     if "endurance" in result:
         parts.append("## Windows chained without keys\n\n" + tables.endurance(result["endurance"]))
     if "diversity" in result:
-        parts.append("## Diversity: mean joint distance between dances to the same music and keys, cm\n\n" + tables.diversity(result["diversity"]))
+        title = "## Diversity: mean joint distance between dances to the same music and keys, cm"
+        parts.append(f"{title}\n\n{tables.diversity(result['diversity'])}")
     if result["pictures"]:
         parts.append("## Pictures\n\n" + "\n\n".join(f"![{Path(path).stem}]({path})" for path in result["pictures"]))
     return "\n\n".join(parts) + "\n"
@@ -140,13 +143,15 @@ def main() -> None:
         result["diversity"] = diversity.diversity(clips, run, page)
     result["bars"] = bars.bars(result["table"], result.get("endurance"))
     result["pictures"] = [f"{args.out.name}/{name}" for name in draw(args.out, result, clips, run, extra)]
+    used = os.times()
     result["about"]["seconds"] = round(time.monotonic() - started)
+    result["about"]["cpu_seconds"] = round(used.user + used.system + used.children_user + used.children_system)
     args.out.parent.mkdir(parents=True, exist_ok=True)
     args.out.with_suffix(".json").write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
     text = markdown(result)
     args.out.with_suffix(".md").write_text(text, encoding="utf-8")
     print(text)
-    print(f"{result['about']['seconds']} s")
+    print(f"{result['about']['seconds']} s, {result['about']['cpu_seconds']} s of CPU")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,12 @@
 """Trains and measures many small runs with one budget each: paper A's lambda x sigma sweep, and ablations.
 
-    python export/sweep.py sweep  --data DATA --features FEATURES --runs export/runs/sweep  --out export/results/sweep     --minutes 6 -- TRAIN FLAGS
-    python export/sweep.py ablate --data DATA --features FEATURES --runs export/runs/ablate --out export/results/ablations --minutes 6 -- TRAIN FLAGS
+    python export/sweep.py sweep --data DATA --features FEATURES --runs export/runs/sweep --out export/results/sweep \\
+        --minutes 6 -- TRAIN FLAGS
+    python export/sweep.py ablate --data DATA --features FEATURES --runs export/runs/ablate --out export/results/ablations \\
+        --minutes 6 -- TRAIN FLAGS
 
-Flags after `--` go to every run of train.py (sizes, schedule, threads ...). Stopped half-way it goes on where it was: runs that are done
+`ablate --trainer train_inbetween.py` does it for the in-betweener, which is then measured alone.
+Flags after `--` go to every run (sizes, schedule, threads ...). Stopped half-way it goes on where it was: runs that are done
 are skipped, and the tables are written again after each run. Runs live in --runs; --out gets .json, .md and, of the sweep, .png.
 The measures are those of evaluate.py for the network alone (no page), on the validation clips.
 """
@@ -26,11 +29,11 @@ from evaluation.runners import torch_runner
 from evaluation.table import core_table
 from evaluation.tables import grid, number
 
-TRAINER = Path(__file__).parent / "train.py"
+HERE = Path(__file__).parent
 LAMBDAS = (0.0, 1.0, 3.0, 5.0)
 SIGMAS = (0.05, 0.1, 0.2)
-# What each variation changes against the flags that all runs share.
-ABLATIONS: dict[str, list[str]] = {
+# What each variation changes against the flags that all runs share, by trainer.
+DANCER = {
     "all of it": [],
     "no mirror": ["--mirror", "0"],
     "no change of tempo": ["--tempo", "1", "1"],
@@ -44,6 +47,18 @@ ABLATIONS: dict[str, list[str]] = {
     "eq. 14 alone": ["--position", "0", "--velocity", "0", "--speed", "0", "--foot", "0"],
     "eq. 15 as printed": ["--literal-sum"],
 }
+INBETWEENER = {
+    "all of it": [],
+    "no change of tempo": ["--tempo", "1", "1"],
+    "no noise on the inputs": ["--noise", "0"],
+    "no velocity loss": ["--velocity", "0"],
+    "no amount-of-motion loss": ["--speed", "0"],
+    "no position loss": ["--position", "0"],
+    "no rotation loss": ["--rotation", "0"],
+    "every frame equally often": ["--aist", "1"],
+    "no weight decay": ["--weight_decay", "0"],
+}
+ABLATIONS: dict[str, dict[str, list[str]]] = {"train.py": DANCER, "train_inbetween.py": INBETWEENER}
 MEASURES = (
     ("position_cm", "position error, cm"),
     ("rotation_deg", "rotation error, deg"),
@@ -71,31 +86,37 @@ def sweep_runs() -> list[Run]:
     return [Run(f"lambda-{lam:g}-sigma-{sigma:g}", ["--lam", f"{lam:g}", "--sigma", f"{sigma:g}"]) for sigma in SIGMAS for lam in LAMBDAS]
 
 
-def known_flags() -> set[str]:
-    """Flags that the trainer accepts."""
-    done = subprocess.run([sys.executable, str(TRAINER), "--help"], capture_output=True, text=True, check=True)
+def known_flags(trainer: str) -> set[str]:
+    """Flags that a trainer accepts."""
+    done = subprocess.run([sys.executable, str(HERE / trainer), "--help"], capture_output=True, text=True, check=True)
     return {word.strip("[],") for word in done.stdout.split() if word.lstrip("[").startswith("--")}
 
 
-def ablation_runs(names: list[str], flags: set[str]) -> list[Run]:
+def ablation_runs(trainer: str, names: list[str], flags: set[str]) -> list[Run]:
     """The named variations (all without names). Those that need a flag the trainer has not are left out with a word."""
-    unknown = [name for name in names if name not in ABLATIONS]
+    variations = ABLATIONS[trainer]
+    unknown = [name for name in names if name not in variations]
     if unknown:
-        raise ValueError(f"no ablation named {', '.join(unknown)}: choose from {', '.join(ABLATIONS)}")
+        raise ValueError(f"no ablation named {', '.join(unknown)}: choose from {', '.join(variations)}")
     runs = []
-    for name in names or ABLATIONS:
-        missing = [flag for flag in ABLATIONS[name] if flag.startswith("--") and flag not in flags]
+    for name in names or variations:
+        missing = [flag for flag in variations[name] if flag.startswith("--") and flag not in flags]
         if missing:
-            print(f"left out: {name!r}, {TRAINER.name} has no {', '.join(missing)}")
+            print(f"left out: {name!r}, {trainer} has no {', '.join(missing)}")
         else:
-            runs.append(Run(name, ABLATIONS[name]))
+            runs.append(Run(name, variations[name]))
     return runs
 
 
-def train_and_measure(run: Run, folder: Path, arguments: list[str], shared: list[str], measure: Callable[[Path], dict]) -> dict:
-    """Trains one run unless it is done -> {flags, shared, rows}. Raises ValueError when the folder holds a run of other flags."""
+def train_and_measure(
+    trainer: str, run: Run, folder: Path, arguments: list[str], shared: list[str], measure: Callable[[Path], dict]
+) -> dict:
+    """Trains one run unless it is done -> {trainer, flags, shared, steps, seconds, rows}.
+
+    Raises ValueError when the folder holds a run of other flags.
+    """
     done = folder / "measured.json"
-    asked = {"flags": run.flags, "shared": shared}
+    asked = {"trainer": trainer, "flags": run.flags, "shared": shared}
     if (folder / "asked.json").exists():
         before = json.loads((folder / "asked.json").read_text(encoding="utf-8"))
         if before != asked:
@@ -104,7 +125,7 @@ def train_and_measure(run: Run, folder: Path, arguments: list[str], shared: list
         return json.loads(done.read_text(encoding="utf-8"))
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "asked.json").write_text(json.dumps(asked), encoding="utf-8")
-    subprocess.run([sys.executable, str(TRAINER), *arguments, "--out", str(folder), *shared, *run.flags], check=True)
+    subprocess.run([sys.executable, str(HERE / trainer), *arguments, "--out", str(folder), *shared, *run.flags], check=True)
     log = [json.loads(line) for line in (folder / "log.jsonl").read_text(encoding="utf-8").splitlines()]
     entry = asked | {"steps": log[-1]["step"], "seconds": log[-1]["seconds"], "rows": measure(folder / "checkpoint.pt")}
     done.write_text(json.dumps(entry), encoding="utf-8")
@@ -145,9 +166,10 @@ def budget(entries: dict[str, dict]) -> str:
     """What every run had."""
     steps = [entry["steps"] for entry in entries.values()]
     seconds = [entry["seconds"] for entry in entries.values()]
-    shared = next(iter(entries.values()))["shared"]
+    first = next(iter(entries.values()))
+    shared = first["shared"]
     return (
-        f"{len(entries)} runs, each `train.py {shlex.join(shared)}`: {min(steps)}-{max(steps)} steps, "
+        f"{len(entries)} runs, each `{first['trainer']} {shlex.join(shared)}`: {min(steps)}-{max(steps)} steps, "
         f"{min(seconds) / 60:.1f}-{max(seconds) / 60:.1f} min of training. The network alone, each window seeded by real dance."
     )
 
@@ -203,13 +225,15 @@ def main(words: list[str] | None = None) -> None:
     much.add_argument("--steps", type=int, help="of each run")
     parser.add_argument("--spacings", type=float, nargs="+", default=(1.0, 2.0))
     parser.add_argument("--only", nargs="+", default=[], help="names of ablations")
+    parser.add_argument("--trainer", choices=tuple(ABLATIONS), default="train.py", help="of the ablations")
     parser.add_argument("--threads", type=int, default=1, help="CPU threads of the measuring")
     words = sys.argv[1:] if words is None else words
     at = words.index("--") if "--" in words else len(words)
     args, train_flags = parser.parse_args(words[:at]), words[at + 1 :]
 
     torch.set_num_threads(args.threads)
-    runs = sweep_runs() if args.what == "sweep" else ablation_runs(args.only, known_flags())
+    trainer = "train.py" if args.what == "sweep" else args.trainer
+    runs = sweep_runs() if args.what == "sweep" else ablation_runs(trainer, args.only, known_flags(trainer))
     write = write_sweep if args.what == "sweep" else write_ablations
     arguments = ["--data", args.data, "--cache", args.cache, *(["--features", args.features] if args.features else [])]
     shared = ["--minutes", f"{args.minutes:g}"] if args.minutes else ["--steps", str(args.steps)]
@@ -218,7 +242,8 @@ def main(words: list[str] | None = None) -> None:
     args.out.parent.mkdir(parents=True, exist_ok=True)
     entries: dict[str, dict] = {}
     for run in runs:
-        entries[run.name] = train_and_measure(run, args.runs / run.name.replace(" ", "-"), arguments, [*shared, *train_flags], measure)
+        folder = args.runs / run.name.replace(" ", "-")
+        entries[run.name] = train_and_measure(trainer, run, folder, arguments, [*shared, *train_flags], measure)
         write(args.out, entries, f"{args.spacings[0]:g}")
         print(f"{run.name}: done")
 

@@ -17,7 +17,8 @@ import torch
 from torch import Tensor
 
 from evaluation.dances import Task
-from export_onnx import load_averaged, to_onnx
+from evaluation.runners import load_network
+from export_onnx import to_onnx
 from metrics import matrices_of
 from rotation import matrix_to_axis_angle, matrix_to_quaternion, matrix_to_six_d, quaternion_to_matrix
 from spec import FPS, JOINT_COUNT, ROTATION_SIZE, SEED_FRAMES
@@ -82,7 +83,7 @@ def _motion(rows: np.ndarray) -> Tensor:
 def as_onnx(checkpoint: Path, folder: Path) -> Path:
     """A checkpoint's averaged weights as an fp32 ONNX file in `folder`."""
     path = folder / "model.onnx"
-    path.write_bytes(to_onnx(load_averaged(checkpoint), "evaluation").SerializeToString())
+    path.write_bytes(to_onnx(load_network(checkpoint), "evaluation").SerializeToString())
     return path
 
 

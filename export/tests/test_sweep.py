@@ -13,7 +13,7 @@ import sweep
 
 def entry(value: float, flags: list[str] | None = None) -> dict:
     row = {name: value for name, _ in sweep.MEASURES} | {"S_cv_median": value}
-    return {"flags": flags or [], "shared": ["--steps", "9"], "steps": 9, "seconds": 60.0, "rows": {"1": {k: row for k in ("real", "slerp", "model")}}}
+    return {"trainer": "train.py", "flags": flags or [], "shared": ["--steps", "9"], "steps": 9, "seconds": 60.0, "rows": {"1": {k: row for k in ("real", "slerp", "model")}}}
 
 
 def test_the_sweep_is_the_papers():
@@ -43,8 +43,8 @@ def test_files_of_a_sweep(tmp_path: Path):
 
 def test_unknown_ablations_and_flags(capsys: pytest.CaptureFixture):
     with pytest.raises(ValueError, match="no ablation named 'nonsense'|no ablation named nonsense"):
-        sweep.ablation_runs(["nonsense"], set())
-    runs = sweep.ablation_runs(["all of it", "no mirror", "no velocity loss"], {"--velocity"})
+        sweep.ablation_runs("train.py", ["nonsense"], set())
+    runs = sweep.ablation_runs("train.py", ["all of it", "no mirror", "no velocity loss"], {"--velocity"})
     assert [run.name for run in runs] == ["all of it", "no velocity loss"]
     assert "'no mirror'" in capsys.readouterr().out
 
