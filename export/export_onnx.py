@@ -1,10 +1,11 @@
-"""Writes the trained model as ONNX for the browser, in three forms, and picks nothing by itself:
+"""Writes the trained model as ONNX for the browser, in four forms, and picks nothing by itself:
 
     python export/export_onnx.py --checkpoint export/runs/light/checkpoint.pt --form q8 --out public/models
 
 fp32   as trained
 fp16   weights stored in half precision + Cast (all arithmetic stays fp32)
 q8     large matrices stored as int8 with a scale per output column + Cast x scale, the rest as fp16
+q6     like q8 with 64 levels, four of them packed into three bytes; the graph unpacks them once, when the session is made
 --compare prints size and output error of all forms. The output folder also gets manifest.json and a golden window
 (golden.json + golden.bin) on which the app checks each backend before it trusts it.
 """
@@ -124,24 +125,60 @@ def _output_axis(proto: onnx.ModelProto, name: str) -> int | None:
     return None
 
 
-def quantise(weight: np.ndarray, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """int8 values and fp32 scales (one per output) with the clipping that loses least in the squares."""
+def quantise(weight: np.ndarray, axis: int, levels: int = 127) -> tuple[np.ndarray, np.ndarray]:
+    """Whole numbers in -levels..levels and fp32 scales (one per output) with the clipping that loses least in the squares."""
     other = 1 - axis
     peak = np.maximum(np.abs(weight).max(axis=other, keepdims=True), 1e-12)
-    best_scale, best_error = peak / 127, None
-    for clip in (1.0, 0.95, 0.9, 0.85, 0.8, 0.75):
-        scale = peak * clip / 127
-        error = ((np.clip(np.round(weight / scale), -127, 127) * scale - weight) ** 2).sum(axis=other, keepdims=True)
+    best_scale, best_error = peak / levels, None
+    for clip in (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65, 0.6):
+        scale = peak * clip / levels
+        error = ((np.clip(np.round(weight / scale), -levels, levels) * scale - weight) ** 2).sum(axis=other, keepdims=True)
         if best_error is None:
             best_error = error
         else:
             better = error < best_error
             best_scale, best_error = np.where(better, scale, best_scale), np.where(better, error, best_error)
-    return np.clip(np.round(weight / best_scale), -127, 127).astype(np.int8), best_scale.astype(np.float32)
+    return np.clip(np.round(weight / best_scale), -levels, levels).astype(np.int8), best_scale.astype(np.float32)
+
+
+def pack_six_bits(numbers: np.ndarray) -> np.ndarray:
+    """Whole numbers in -31..31 [rows, columns], rows a multiple of 4 -> bytes [3, rows / 4, columns].
+
+    Row group g of the four quarters of the matrix makes three bytes: each byte has one number in its upper six bits and two
+    bits of the fourth number in its lower two.
+    """
+    first, second, third, fourth = (numbers + 32).astype(np.uint8).reshape(4, -1, numbers.shape[1])
+    return np.stack([first << 2 | fourth >> 4, second << 2 | fourth >> 2 & 3, third << 2 | fourth & 3])
+
+
+def _unpack_six_bits(name: str, packed: str, shape: tuple[int, int]) -> tuple[list, list]:
+    """Nodes and constants that turn packed bytes back into numbers [rows, columns] called `name`; plain arithmetic only."""
+    constants = [
+        numpy_helper.from_array(np.float32(0.25), name + "_quarter"),
+        numpy_helper.from_array(np.float32(4), name + "_four"),
+        numpy_helper.from_array(np.float32(32), name + "_middle"),
+        numpy_helper.from_array(np.array([16, 4, 1], np.float32).reshape(3, 1, 1), name + "_places"),
+        numpy_helper.from_array(np.array([0], np.int64), name + "_axis"),
+        numpy_helper.from_array(np.array(shape, np.int64), name + "_shape"),
+    ]
+    node = helper.make_node
+    nodes = [
+        node("Cast", [packed], [name + "_bytes"], to=TensorProto.FLOAT),
+        node("Mul", [name + "_bytes", name + "_quarter"], [name + "_scaled"]),
+        node("Floor", [name + "_scaled"], [name + "_upper"]),  # the first three quarters
+        node("Mul", [name + "_upper", name + "_four"], [name + "_back"]),
+        node("Sub", [name + "_bytes", name + "_back"], [name + "_lower"]),
+        node("Mul", [name + "_lower", name + "_places"], [name + "_parts"]),
+        node("ReduceSum", [name + "_parts", name + "_axis"], [name + "_fourth"], keepdims=1),
+        node("Concat", [name + "_upper", name + "_fourth"], [name + "_all"], axis=0),
+        node("Reshape", [name + "_all", name + "_shape"], [name + "_rows"]),
+        node("Sub", [name + "_rows", name + "_middle"], [name]),
+    ]
+    return nodes, constants
 
 
 def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
-    """A copy with weights stored as `fp16` or `q8`; arithmetic stays fp32, so every backend can run it."""
+    """A copy with weights stored as `fp16`, `q8` or `q6`; arithmetic stays fp32, so every backend can run it."""
     small = onnx.ModelProto()
     small.CopyFrom(proto)
     kept, unpack = [], []
@@ -152,10 +189,18 @@ def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
             continue
         axis = _output_axis(proto, tensor.name)
         stored = tensor.name + "_stored"
-        if form == "q8" and axis is not None and values.ndim == 2 and values.size >= SMALLEST_QUANTISED:
-            numbers, scale = quantise(values, axis)
-            kept += [numpy_helper.from_array(numbers, stored), numpy_helper.from_array(scale, tensor.name + "_scale")]
-            unpack.append(helper.make_node("Cast", [stored], [tensor.name + "_float"], to=TensorProto.FLOAT))
+        if form in ("q8", "q6") and axis is not None and values.ndim == 2 and values.size >= SMALLEST_QUANTISED:
+            six = form == "q6" and values.shape[0] % 4 == 0
+            numbers, scale = quantise(values, axis, 31 if six else 127)
+            kept.append(numpy_helper.from_array(scale, tensor.name + "_scale"))
+            if six:
+                kept.append(numpy_helper.from_array(pack_six_bits(numbers), stored))
+                nodes, constants = _unpack_six_bits(tensor.name + "_float", stored, values.shape)
+                unpack += nodes
+                kept += constants
+            else:
+                kept.append(numpy_helper.from_array(numbers, stored))
+                unpack.append(helper.make_node("Cast", [stored], [tensor.name + "_float"], to=TensorProto.FLOAT))
             unpack.append(helper.make_node("Mul", [tensor.name + "_float", tensor.name + "_scale"], [tensor.name]))
         else:
             kept.append(numpy_helper.from_array(values.astype(np.float16), stored))
@@ -235,7 +280,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--checkpoint", required=True)
     parser.add_argument("--name", default="light")
-    parser.add_argument("--form", choices=["fp32", "fp16", "q8"], default="q8")
+    parser.add_argument("--form", choices=["fp32", "fp16", "q8", "q6"], default="q8")
     parser.add_argument("--out", required=True, help="folder for NAME.onnx, manifest.json, golden.json and golden.bin")
     parser.add_argument("--compare", action="store_true", help="print size and error of every form")
     args = parser.parse_args()
@@ -243,7 +288,7 @@ def main() -> None:
     steps = torch.load(args.checkpoint, weights_only=True, map_location="cpu")["step"]
     full = to_onnx(model, args.name)
     forms = {"fp32": full}
-    for form in ("fp16", "q8"):
+    for form in ("fp16", "q8", "q6"):
         if args.compare or args.form == form:
             forms[form] = compress(full, form, args.name)
     inputs = synthetic_inputs(1, SEED_FRAMES, MUSIC_FRAMES, 3)

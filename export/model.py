@@ -1,12 +1,15 @@
 """The key-pose dance transformer in one file (paper: "Music-driven Dance Regeneration with Controllable Key Pose Constraints").
 
-Letters in shape comments: B batch, S seed frames (T' of the paper), T music frames, D width, H heads, J = 24 joints.
+Letters in shape comments: B batch, S seed frames (T' of the paper), T music frames, D width, H heads, J = 24 joints, P frames in
+a patch, N tokens.
 
 What is added to the paper, and why:
-- The output is a residual over SLERP between the neighbouring key poses (the "base"), with a zero-initialised head, so an
-  untrained model already equals that baseline. Between keys the base is what a transformer otherwise spends its training on.
+- The output is a residual over a base motion through the key poses, with a zero-initialised head: SLERP, bent by a learned
+  in-betweener (inbetween.py), or SLERP alone. Between keys the base is what a transformer otherwise spends its training on.
 - Each frame also sees its base pose and the steps between the two anchors on either side, in the body's own frame (E^B
   below). Eq. 6 alone puts a pose at the key's frame only, and attention takes long to find out how to carry it over.
+- A token may stand for a patch of neighbouring frames: poses 33 ms apart differ little, and a third of the tokens is a third
+  of the work in training and in the browser. `patch=1` is the paper's one token a frame.
 - Inputs are standardised by means and deviations of the training data, kept in the model.
 - The pelvis path is integrated from a velocity in the body's heading, so it does not depend on where the window faces.
 - Layers start as the identity (their output projections are zero), so a short run may train the first ones alone and
@@ -19,20 +22,18 @@ Attention is written as plain products: fused attention gives wrong answers on s
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
 import torch
 from torch import Tensor, nn
 
-from rotation import gram_schmidt, matrix_to_quaternion, quaternion_to_matrix, slerp, unit
-from spec import FEATURE_COUNT, FPS, JOINT_COUNT, MAX_FRAMES, MOTION_SIZE, ROTATION_SIZE
+from anchors import GAP_FEATURES, POSE_FEATURES, Base, find_base, turn_columns
+from inbetween import Inbetweener, InbetweenConfig
+from rotation import unit
+from spec import FEATURE_COUNT, FPS, MAX_FRAMES, MOTION_SIZE, ROTATION_SIZE
 
 INPUT_NAMES = ("music", "seed", "key_poses", "key_mask", "to_previous", "to_next")
 OUTPUT_NAME = "motion"
-_LIMBS = ROTATION_SIZE - 6  # 6D numbers of the joints other than the pelvis
-_STEP = _LIMBS + 6  # one anchor to the next
-_BASE_SIZE = _LIMBS + 3 + 3 * _STEP + 6
-SHORTEST_SEED = 16  # frames; the course of the last half second tells where the first stretch comes from
 
 
 @dataclass
@@ -45,7 +46,13 @@ class ModelConfig:
     encoder_layers: int = 4
     cross_layers: int = 8
     dropout: float = 0.05
+    patch: int = 3
     max_frames: int = MAX_FRAMES
+    inbetween: InbetweenConfig | None = field(default_factory=InbetweenConfig)
+
+    def __post_init__(self) -> None:
+        if isinstance(self.inbetween, dict):
+            self.inbetween = InbetweenConfig(**self.inbetween)
 
     @staticmethod
     def named(name: str) -> "ModelConfig":
@@ -55,7 +62,8 @@ class ModelConfig:
         if name == "large":
             return ModelConfig(width=800, heads=10, feedforward=3200, cross_layers=12, dropout=0.1)
         if name == "tiny":
-            return ModelConfig(width=32, heads=2, feedforward=64, encoder_layers=1, cross_layers=1, dropout=0.0)
+            small = InbetweenConfig(width=16, hidden=16, blocks=1, knots=4)
+            return ModelConfig(32, 2, 64, encoder_layers=1, cross_layers=1, dropout=0.0, inbetween=small)
         raise ValueError(f"no model config named {name!r}: choose light, large or tiny")
 
     def as_dict(self) -> dict:
@@ -146,75 +154,6 @@ class LocalPositionalEmbedding(nn.Module):
         return torch.cat([self.no_previous, self.no_next])
 
 
-@dataclass
-class Base:
-    """What is known of each frame before the network: SLERP between its anchors."""
-
-    columns: tuple[Tensor, Tensor, Tensor]  # columns of the base rotations, each [B, T, J, 3]
-    features: Tensor  # [B, T, _BASE_SIZE], free of the window's heading
-    root: Tensor  # [B, T, 3]: the last seed frame's
-
-
-def interpolation_base(seed: Tensor, key_poses: Tensor, to_previous: Tensor, to_next: Tensor) -> Base:
-    """SLERP from the key before (or the last seed frame, t + 1 frames back) to the key after (none: the pose holds)."""
-    batch, frames = to_previous.shape
-    t = torch.arange(frames, device=seed.device)
-    first_row = (torch.arange(batch, device=seed.device) * frames)[:, None]
-
-    def look_up(table: Tensor, index: Tensor) -> Tensor:  # [B, T, n] at [B, T] -> [B, T, n]
-        # Embedding look-up on the flattened table exports to one Gather, which every backend has.
-        return nn.functional.embedding(first_row + index.clamp(0, frames - 1), table.reshape(batch * frames, -1))
-
-    last = seed[:, -1:, :ROTATION_SIZE]
-    earlier = seed[:, -SHORTEST_SEED:][:, :1, :ROTATION_SIZE]
-    has_previous, has_next = to_previous >= 0, to_next >= 0
-    at_previous, at_next = t - to_previous.long(), t + to_next.long()
-    before = torch.where(has_previous[..., None], look_up(key_poses, at_previous), last)
-    after = torch.where(has_next[..., None], look_up(key_poses, at_next), before)
-    back = torch.where(has_previous, to_previous, (t + 1).to(to_previous))
-    ahead = to_next.clamp(min=0)
-    # At a key both distances are 0 (and both anchors are that key), hence the floor of 1.
-    fraction = back / (back + ahead).clamp(min=1)
-    fraction = torch.where(has_next, fraction, torch.zeros_like(fraction))
-
-    # One anchor further on each side: where the motion comes from and where it will go.
-    more_back = look_up(to_previous[..., None], at_previous - 1)[..., 0]
-    has_earlier = has_previous & (at_previous > 0) & (more_back >= 0)
-    from_seed = torch.where(has_previous[..., None], last.expand(-1, frames, -1), earlier)
-    earlier_pose = torch.where(has_earlier[..., None], look_up(key_poses, at_previous - 1 - more_back.long()), from_seed)
-    gap_from_seed = torch.where(has_previous, (at_previous + 1).to(to_previous), torch.full_like(back, SHORTEST_SEED - 1))
-    gap_back = torch.where(has_earlier, more_back + 1, gap_from_seed)
-    more_ahead = look_up(to_next[..., None], at_next + 1)[..., 0]
-    has_later = has_next & (at_next < frames - 1) & (more_ahead >= 0)
-    later_pose = torch.where(has_later[..., None], look_up(key_poses, at_next + 1 + more_ahead.long()), after)
-    gap_ahead = torch.where(has_later, more_ahead + 1, torch.zeros_like(more_ahead))
-
-    poses = [_orthonormal(pose) for pose in (earlier_pose, before, after, later_pose)]
-    mixed = slerp(matrix_to_quaternion(poses[1]), matrix_to_quaternion(poses[2]), fraction[..., None, None])
-    base = quaternion_to_matrix(mixed)  # [B, T, J, 3, 3]
-    column0, column1, column2 = base.unbind(-1)
-    limbs = torch.cat([column0[:, :, 1:], column1[:, :, 1:]], -1).flatten(-2)
-    up = base[:, :, 0, 1, :]  # the world's up axis in the body's frame
-    steps = [_step(a, b) for a, b in zip(poses, poses[1:])]
-    times = torch.stack([fraction, has_previous.to(back), has_next.to(back)], -1)
-    gaps = torch.stack([gap_back, back + ahead, gap_ahead], -1) / FPS
-    features = torch.cat([limbs, up, *steps, times, gaps], -1)
-    root = seed[:, -1:, ROTATION_SIZE:].expand(-1, frames, -1)
-    return Base((column0, column1, column2), features, root)
-
-
-def _orthonormal(rotations: Tensor) -> Tensor:  # [B, T, 144] -> [B, T, J, 3, 3]
-    six_d = rotations.unflatten(-1, (JOINT_COUNT, 6))
-    return torch.stack(gram_schmidt(six_d[..., :3], six_d[..., 3:]), -1)
-
-
-def _step(a: Tensor, b: Tensor) -> Tensor:  # two [B, T, J, 3, 3] -> [B, T, _STEP]
-    """Change of the limbs' rotations, and the pelvis's turn in its own frame."""
-    limbs = (b - a)[:, :, 1:, :, :2].transpose(-1, -2).flatten(-3)
-    turn = a[:, :, 0].transpose(-1, -2) @ b[:, :, 0]
-    return torch.cat([limbs, turn[..., 0], turn[..., 1]], -1)
-
-
 class Standardise(nn.Module):
     """(x - mean) / deviation with constants of the training data, limited to +-6 so that a strange pose stays bearable."""
 
@@ -244,26 +183,43 @@ def smooth(x: Tensor) -> Tensor:
     return sum(weight * padded[:, k : k + frames] for k, weight in enumerate(_KERNEL))
 
 
+def patches(x: Tensor, size: int, frames: int, from_end: bool = False) -> Tensor:
+    """[B, T, n] -> [B, N, size * n] with N = T / size rounded up. What is missing is the last frame (`from_end`: the first).
+
+    `frames` is T, taken of an input of the model: the ONNX exporter loses track of the lengths of computed tensors.
+    """
+    if size == 1:
+        return x
+    width = x.shape[2]
+    count = (frames + size - 1) // size
+    index = torch.arange(count * size, device=x.device)
+    index = (index + frames - count * size).clamp(min=0) if from_end else index.clamp(max=frames - 1)
+    return x[:, index].reshape(-1, count, size * width)
+
+
 class KeyPoseDancer(nn.Module):
     """Music, seed motion and key poses -> motion (eq. 3-12). See the module's docstring for what is added to the paper."""
 
     def __init__(self, config: ModelConfig) -> None:
         super().__init__()
         self.config = config
-        width = config.width
-        self.embed_music = nn.Linear(FEATURE_COUNT, width)  # phi_a
-        self.embed_motion = nn.Linear(MOTION_SIZE, width)  # phi_p
-        self.embed_key = nn.Linear(ROTATION_SIZE, width)  # phi of eq. 6
-        self.embed_base = nn.Linear(_BASE_SIZE, width)
+        width, size = config.width, config.patch
+        self.inbetweener = Inbetweener(config.inbetween) if config.inbetween else None
+        self.embed_music = nn.Linear(size * FEATURE_COUNT, width)  # phi_a
+        self.embed_motion = nn.Linear(size * MOTION_SIZE, width)  # phi_p
+        self.embed_key = nn.Linear(size * (ROTATION_SIZE + 1), width)  # phi of eq. 6
+        base_size = size * POSE_FEATURES + GAP_FEATURES
+        self.embed_base = nn.Linear(base_size, width)
         # The base must be heard beside the unit-sized music code and the two positional encodings it is added to.
-        nn.init.normal_(self.embed_base.weight, std=2 * _BASE_SIZE**-0.5)
-        self.motion_scale, self.base_scale = Standardise(MOTION_SIZE), Standardise(_BASE_SIZE)
+        nn.init.normal_(self.embed_base.weight, std=2 * base_size**-0.5)
+        self.motion_scale = Standardise(MOTION_SIZE)
+        self.pose_scale, self.steps_scale = Standardise(POSE_FEATURES), Standardise(GAP_FEATURES)
         self.music_encoder = Encoder(config, config.encoder_layers)
         self.motion_encoder = Encoder(config, config.encoder_layers)
         self.cross_encoder = Encoder(config, config.cross_layers)
         self.local = LocalPositionalEmbedding(config)
         self.register_buffer("positions", positional_encoding(config.max_frames, width), persistent=False)
-        self.head = nn.Linear(width, MOTION_SIZE)  # phi_o
+        self.head = nn.Linear(width, size * MOTION_SIZE)  # phi_o
         nn.init.zeros_(self.head.weight)
         nn.init.zeros_(self.head.bias)
 
@@ -271,16 +227,20 @@ class KeyPoseDancer(nn.Module):
         self, music: Tensor, seed: Tensor, key_poses: Tensor, key_mask: Tensor, to_previous: Tensor, to_next: Tensor
     ) -> Tensor:
         """[B, T, 15], [B, S, 147], [B, T, 144], [B, T], [B, T], [B, T] -> motion [B, T, 147], its 6D orthonormal."""
-        seed_frames, frames = seed.shape[1], music.shape[1]
-        music_code = self.music_encoder(self.embed_music(music) + self.positions[:frames])  # E^A, eq. 3
-        seed_code = self.motion_encoder(self.embed_motion(self.motion_scale(seed)) + self.positions[:seed_frames])  # E^M, eq. 4
-        base = interpolation_base(seed, key_poses, to_previous, to_next)
-        keys = self._embed_keys(key_poses) * key_mask[..., None]  # E^P, eq. 5-6
+        frames, size = music.shape[1], self.config.patch
+        music_tokens = self.embed_music(patches(music, size, frames))
+        seed_tokens = self.embed_motion(patches(self.motion_scale(seed), size, seed.shape[1], from_end=True))
+        count, seed_count = music_tokens.shape[1], seed_tokens.shape[1]
+        music_code = self.music_encoder(music_tokens + self.positions[:count])  # E^A, eq. 3
+        seed_code = self.motion_encoder(seed_tokens + self.positions[:seed_count])  # E^M, eq. 4
+        base = find_base(seed, key_poses, to_previous, to_next, self.inbetweener)
         # Eq. 11: E^P and PE^L exist for the T music frames; the seed gets zero and the sentinel.
-        frames_code = music_code + keys + self.local(to_previous, to_next) + self.embed_base(self.base_scale(base.features))
-        joint = torch.cat([seed_code + self.local.seed_rows(), frames_code], 1) + self.positions[: seed_frames + frames]
-        output = self.cross_encoder(joint)[:, seed_frames:]  # only the T music frames are supervised and emitted
-        return self._compose(smooth(self.head(output)), base)
+        tokens = music_code + self._embed_keys(key_poses, key_mask) + self._embed_local(to_previous, to_next)
+        tokens = tokens + self._embed_base(base, frames)
+        joint = torch.cat([seed_code + self.local.seed_rows(), tokens], 1) + self.positions[: seed_count + count]
+        output = self.cross_encoder(joint)[:, seed_count:]  # only the T music frames are supervised and emitted
+        residual = self.head(output).reshape(-1, count * size, MOTION_SIZE)[:, :frames]
+        return self._compose(smooth(residual), base)
 
     def set_depth(self, encoders: int, cross: int) -> None:
         """Runs only the first layers of each stack. Exact as long as the layers left out have not been trained."""
@@ -291,30 +251,40 @@ class KeyPoseDancer(nn.Module):
     def fit_inputs(self, batches: list[dict[str, Tensor]]) -> None:
         """Takes the constants of the input standardisation from training batches."""
         names = ("seed", "key_poses", "to_previous", "to_next")
-        bases = [interpolation_base(*(batch[name] for name in names)).features for batch in batches]
-        self.base_scale.fit(torch.cat([base.flatten(0, 1) for base in bases]))
+        bases = [find_base(*(batch[name] for name in names), self.inbetweener) for batch in batches]
+        self.pose_scale.fit(torch.cat([base.pose.flatten(0, 1) for base in bases]))
+        self.steps_scale.fit(torch.cat([base.steps.flatten(0, 1) for base in bases]))
         self.motion_scale.fit(torch.cat([batch["seed"].flatten(0, 1) for batch in batches]))
 
-    def _embed_keys(self, key_poses: Tensor) -> Tensor:  # [B, T, 144] -> [B, T, D]
+    def _embed_keys(self, key_poses: Tensor, key_mask: Tensor) -> Tensor:  # [B, T, 144], [B, T] -> E^P [B, N, D], eq. 5-6
         scale = self.motion_scale
-        poses = (key_poses - scale.mean[:ROTATION_SIZE]) * scale.scale[:ROTATION_SIZE]
-        return self.embed_key(poses.clamp(-6, 6))
+        poses = ((key_poses - scale.mean[:ROTATION_SIZE]) * scale.scale[:ROTATION_SIZE]).clamp(-6, 6)
+        # The mask stands beside the pose, so that a patch tells which of its frames is the key.
+        marked = torch.cat([poses, torch.ones_like(poses[..., :1])], -1) * key_mask[..., None]
+        return self.embed_key(patches(marked, self.config.patch, key_mask.shape[1]))
+
+    def _embed_local(self, to_previous: Tensor, to_next: Tensor) -> Tensor:  # [B, T] x 2 -> PE^L [B, N, D], eq. 8-10
+        size, width = self.config.patch, self.config.width
+        rows = patches(self.local(to_previous, to_next), size, to_next.shape[1])
+        return rows.unflatten(-1, (size, width)).mean(-2) if size > 1 else rows
+
+    def _embed_base(self, base: Base, frames: int) -> Tensor:  # E^B [B, N, D]
+        size = self.config.patch
+        poses, steps = (patches(scale(x), size, frames) for scale, x in ((self.pose_scale, base.pose), (self.steps_scale, base.steps)))
+        middle = size // 2 * GAP_FEATURES
+        return self.embed_base(torch.cat([poses, steps[..., middle : middle + GAP_FEATURES]], -1))
 
     def _compose(self, residual: Tensor, base: Base) -> Tensor:
         """Residual numbers [B, T, 147] on the base -> motion [B, T, 147]: R = R_base GramSchmidt(I + residual)."""
-        six_d = residual[..., :ROTATION_SIZE].unflatten(-1, (JOINT_COUNT, 6))
-        identity = residual.new_tensor([1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
-        delta0, delta1, _ = gram_schmidt(*(six_d + identity).split(3, -1))
-        column0, column1, column2 = base.columns
-        turned = [
-            column0 * delta[..., :1] + column1 * delta[..., 1:2] + column2 * delta[..., 2:] for delta in (delta0, delta1)
-        ]
-        rotations = torch.cat(turned, -1).flatten(-2)
+        first, second, _ = turn_columns(base.columns, residual[..., :ROTATION_SIZE])
+        rotations = torch.cat([first, second], -1).flatten(-2)
         return torch.cat([rotations, self._root(residual[..., ROTATION_SIZE:], base)], -1)
 
     def _root(self, residual: Tensor, base: Base) -> Tensor:
-        """Height as an offset from the last seed frame; x and z as the sum of velocities in the base's heading."""
+        """Height as an offset from the base's; x and z as the sum of velocities in the base's heading."""
         side, up, forward = residual.split(1, -1)  # metres per second, metres, metres per second
+        base_side, base_forward = base.velocity.split(1, -1)
+        side, forward = side + base_side, forward + base_forward
         facing = base.columns[2][:, :, 0]  # [B, T, 3] forward axis of the base pelvis
         flat = unit(torch.cat([facing[..., :1], facing[..., 2:]], -1))
         sine, cosine = flat.split(1, -1)

@@ -37,7 +37,8 @@ def world_rotations(matrices: Tensor) -> Tensor:
 
 def _chain(matrices: Tensor, root: Tensor | None) -> tuple[Tensor, Tensor]:
     offsets = _OFFSETS.to(matrices)
-    first = torch.zeros_like(matrices[..., 0, 0, :]) if root is None else root
+    # Times zero instead of zeros_like, which the ONNX exporter turns into a constant of the example's length.
+    first = matrices[..., 0, 0, :] * 0 if root is None else root
     positions, rotations = [first[..., None, :]], [matrices[..., :1, :, :]]
     for above, level in zip(LEVELS, LEVELS[1:]):
         parents = [above.index(PARENTS[j]) for j in level]

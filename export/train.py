@@ -13,19 +13,20 @@ import contextlib
 import copy
 import json
 import math
-import subprocess
-import sys
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import torch
 
-from data import Clip, data_hash, load_clips
+from anchors import find_base
+from data import Clip, load_clips
 from loss import LossConfig, dance_loss
 from metrics import joints, mean_joint_speed
-from model import INPUT_NAMES, KeyPoseDancer, ModelConfig, count_weights, interpolation_base
+from model import INPUT_NAMES, KeyPoseDancer, ModelConfig, count_weights
+from record import record_run
 from spec import FPS, MUSIC_FRAMES, ROTATION_SIZE, SEED_FRAMES, spec_hash
+from train_inbetween import load_inbetweener
 from windows import WindowSampler, collate, cut_window
 
 
@@ -44,6 +45,8 @@ class TrainConfig:
     ema: float = 0.999
     weight_decay: float = 0.0
     dropout: float = -1.0  # below 0: what the model config says
+    patch: int = 0  # frames in a token; 0: what the model config says
+    inbetweener: str = ""  # checkpoint of train_inbetween.py, kept as it is; empty: SLERP is the base
     clip_norm: float = 1.0
     grow: tuple[float, ...] = ()  # shares of the run at which more layers join; (0.4, 0.7): a third, two thirds, all
     precision: str = "fp32"  # fp32 | bf16 | fp16 (fp16 needs a GPU)
@@ -62,12 +65,20 @@ class Trainer:
         model_config = ModelConfig.named(config.model)
         if config.dropout >= 0:
             model_config.dropout = config.dropout
+        if config.patch > 0:
+            model_config.patch = config.patch
+        prior = load_inbetweener(Path(config.inbetweener)) if config.inbetweener else None
+        model_config.inbetween = prior.config if prior else None
         self.model = KeyPoseDancer(model_config).to(config.device)
+        if prior:
+            self.model.inbetweener.load_state_dict(prior.state_dict())
+            self.model.inbetweener.requires_grad_(False)
         train = [clip for clip in clips if clip.split == "train"]
         statistics = WindowSampler(train, 4 * config.tokens, (MUSIC_FRAMES // 2,), seed=config.seed + 1)
         self.model.fit_inputs([statistics.batch() for _ in range(8)])
         self.averaged = copy.deepcopy(self.model).requires_grad_(False).eval()
-        self.optimiser = torch.optim.AdamW(self.model.parameters(), config.lr, betas=(0.9, 0.99), weight_decay=config.weight_decay, fused=True)
+        self.trained = [parameter for parameter in self.model.parameters() if parameter.requires_grad]
+        self.optimiser = torch.optim.AdamW(self.trained, config.lr, betas=(0.9, 0.99), weight_decay=config.weight_decay, fused=True)
         self.scaler = torch.amp.GradScaler(config.device, enabled=config.precision == "fp16")
         self.sampler = WindowSampler(train, config.tokens, tuple(config.lengths), seed=config.seed)
         self.validation = validation_batches([clip for clip in clips if clip.split == "val"])
@@ -112,7 +123,7 @@ class Trainer:
         self.optimiser.zero_grad(set_to_none=True)
         self.scaler.scale(loss).backward()
         self.scaler.unscale_(self.optimiser)
-        norm = torch.nn.utils.clip_grad_norm_(self.model.parameters(), c.clip_norm)
+        norm = torch.nn.utils.clip_grad_norm_(self.trained, c.clip_norm)
         self.scaler.step(self.optimiser)
         self.scaler.update()
         self.step += 1
@@ -130,7 +141,7 @@ class Trainer:
         for batch in self.validation:
             batch = {name: value.to(self.config.device) for name, value in batch.items()}
             predicted = self.averaged(*(batch[name] for name in INPUT_NAMES))
-            columns = interpolation_base(batch["seed"], batch["key_poses"], batch["to_previous"], batch["to_next"]).columns
+            columns = find_base(batch["seed"], batch["key_poses"], batch["to_previous"], batch["to_next"]).columns
             slerp = torch.cat([torch.cat(columns[:2], -1).flatten(-2), batch["target"][..., ROTATION_SIZE:]], -1)
             real = joints(batch["target"])
             mask = batch["valid"].all(-1) & (batch["key_mask"] == 0)
@@ -195,28 +206,6 @@ def validation_batches(clips: list[Clip], spacing: int = FPS, most: int = 24) ->
     return [collate(windows[i : i + 6]) for i in range(0, len(windows), 6)]
 
 
-def _git_commit() -> str:
-    done = subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True, cwd=Path(__file__).parent, check=False)
-    return done.stdout.strip() or "unknown"
-
-
-def _record(out: Path, args: argparse.Namespace, config: TrainConfig, loss: LossConfig, weights: int) -> None:
-    entry = {
-        "command": "python " + " ".join(sys.argv),
-        "config": asdict(config),
-        "loss": asdict(loss),
-        "weights": weights,
-        "spec_hash": spec_hash(),
-        "data_hash": data_hash(Path(args.data), Path(args.features) if args.features else None),
-        "git_commit": _git_commit(),
-        "torch": torch.__version__,
-        "threads": torch.get_num_threads(),
-        "started": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
-    }
-    with (out / "runs.jsonl").open("a", encoding="utf-8") as file:
-        file.write(json.dumps(entry) + "\n")
-
-
 def _plain(value):
     return tuple(value) if isinstance(value, list) else value
 
@@ -253,7 +242,7 @@ def main() -> None:
     checkpoint = out / "checkpoint.pt"
     if checkpoint.exists():
         trainer.load(checkpoint)
-    _record(out, args, config, loss, count_weights(trainer.model))
+    record_run(out, args.data, args.features, count_weights(trainer.model), {"config": asdict(config), "loss": asdict(loss)})
     with (out / "log.jsonl").open("a", encoding="utf-8") as log:
 
         def write(entry: dict) -> None:

@@ -41,7 +41,7 @@ def test_compressed_forms_stay_close_and_get_small(light):
     model, proto = light
     inputs = synthetic_inputs(1, 60, 120, 4)
     expected, full = torch_output(model, inputs), proto.ByteSize()
-    for form, share, error in (("fp16", 0.52, 5e-3), ("q8", 0.28, 0.1)):
+    for form, share, error in (("fp16", 0.52, 2e-2), ("q8", 0.28, 0.4), ("q6", 0.22, 1.5)):
         small = compress(proto, form, "light")
         assert small.ByteSize() < share * full
         assert np.abs(run_onnx(small, inputs, 2) - expected).max() <= error
