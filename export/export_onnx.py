@@ -142,16 +142,17 @@ def quantise(weight: np.ndarray, axis: int, levels: int = 127) -> tuple[np.ndarr
 
 
 def pack_six_bits(numbers: np.ndarray) -> np.ndarray:
-    """Whole numbers in -31..31 [rows, columns], rows a multiple of 4 -> bytes [3, rows / 4, columns].
+    """Whole numbers in -31..31 [rows, columns] -> bytes [3, rows / 4 rounded up, columns].
 
     Row group g of the four quarters of the matrix makes three bytes: each byte has one number in its upper six bits and two
-    bits of the fourth number in its lower two.
+    bits of the fourth number in its lower two. Missing rows are zero.
     """
+    numbers = np.pad(numbers, ((0, -len(numbers) % 4), (0, 0)))
     first, second, third, fourth = (numbers + 32).astype(np.uint8).reshape(4, -1, numbers.shape[1])
     return np.stack([first << 2 | fourth >> 4, second << 2 | fourth >> 2 & 3, third << 2 | fourth & 3])
 
 
-def _unpack_six_bits(name: str, packed: str, shape: tuple[int, int]) -> tuple[list, list]:
+def unpack_six_bits(name: str, packed: str, shape: tuple[int, int]) -> tuple[list, list]:
     """Nodes and constants that turn packed bytes back into numbers [rows, columns] called `name`; plain arithmetic only."""
     constants = [
         numpy_helper.from_array(np.float32(0.25), name + "_quarter"),
@@ -159,7 +160,8 @@ def _unpack_six_bits(name: str, packed: str, shape: tuple[int, int]) -> tuple[li
         numpy_helper.from_array(np.float32(32), name + "_middle"),
         numpy_helper.from_array(np.array([16, 4, 1], np.float32).reshape(3, 1, 1), name + "_places"),
         numpy_helper.from_array(np.array([0], np.int64), name + "_axis"),
-        numpy_helper.from_array(np.array(shape, np.int64), name + "_shape"),
+        numpy_helper.from_array(np.array([-1, shape[1]], np.int64), name + "_shape"),
+        numpy_helper.from_array(np.array([shape[0]], np.int64), name + "_end"),
     ]
     node = helper.make_node
     nodes = [
@@ -172,7 +174,8 @@ def _unpack_six_bits(name: str, packed: str, shape: tuple[int, int]) -> tuple[li
         node("ReduceSum", [name + "_parts", name + "_axis"], [name + "_fourth"], keepdims=1),
         node("Concat", [name + "_upper", name + "_fourth"], [name + "_all"], axis=0),
         node("Reshape", [name + "_all", name + "_shape"], [name + "_rows"]),
-        node("Sub", [name + "_rows", name + "_middle"], [name]),
+        node("Slice", [name + "_rows", name + "_axis", name + "_end", name + "_axis"], [name + "_real"]),
+        node("Sub", [name + "_real", name + "_middle"], [name]),
     ]
     return nodes, constants
 
@@ -190,12 +193,13 @@ def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
         axis = _output_axis(proto, tensor.name)
         stored = tensor.name + "_stored"
         if form in ("q8", "q6") and axis is not None and values.ndim == 2 and values.size >= SMALLEST_QUANTISED:
-            six = form == "q6" and values.shape[0] % 4 == 0
+            six = form == "q6"
             numbers, scale = quantise(values, axis, 31 if six else 127)
-            kept.append(numpy_helper.from_array(scale, tensor.name + "_scale"))
+            kept.append(numpy_helper.from_array(scale.astype(np.float16), tensor.name + "_scale_stored"))
+            unpack.append(helper.make_node("Cast", [tensor.name + "_scale_stored"], [tensor.name + "_scale"], to=TensorProto.FLOAT))
             if six:
                 kept.append(numpy_helper.from_array(pack_six_bits(numbers), stored))
-                nodes, constants = _unpack_six_bits(tensor.name + "_float", stored, values.shape)
+                nodes, constants = unpack_six_bits(tensor.name + "_float", stored, values.shape)
                 unpack += nodes
                 kept += constants
             else:

@@ -218,7 +218,8 @@ class KeyPoseDancer(nn.Module):
         self.motion_encoder = Encoder(config, config.encoder_layers)
         self.cross_encoder = Encoder(config, config.cross_layers)
         self.local = LocalPositionalEmbedding(config)
-        self.register_buffer("positions", positional_encoding(config.max_frames, width), persistent=False)
+        tokens = config.max_frames // size + 2  # seed and music each round up
+        self.register_buffer("positions", positional_encoding(tokens, width), persistent=False)
         self.head = nn.Linear(width, size * MOTION_SIZE)  # phi_o
         nn.init.zeros_(self.head.weight)
         nn.init.zeros_(self.head.bias)

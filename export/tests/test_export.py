@@ -5,11 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import onnx
+import onnxruntime
 import pytest
 import torch
+from onnx import TensorProto, helper, numpy_helper
 
 import golden
-from export_onnx import compress, quantise, run_onnx, to_onnx
+from export_onnx import compress, pack_six_bits, quantise, run_onnx, to_onnx, unpack_six_bits
 from model import INPUT_NAMES, OUTPUT_NAME, KeyPoseDancer, ModelConfig
 from samples import randomise, synthetic_inputs
 from spec import spec_hash
@@ -56,6 +58,24 @@ def test_plain_operators_and_metadata(light):
     assert "MIT" in metadata["licence"] and "AIST++" in metadata["attribution"]
     axes = {i.name: [d.dim_param for d in i.type.tensor_type.shape.dim][:2] for i in proto.graph.input}
     assert axes["music"] == ["B", "T"] and axes["seed"] == ["B", "S"]
+
+
+def test_six_bits_by_hand():
+    # Four rows of one number: 33, 31, 30 and 45 after adding 32; 45 = 2 * 16 + 3 * 4 + 1 gives its pairs of bits to the three bytes.
+    packed = pack_six_bits(np.array([[1], [-1], [-2], [13]], np.int8))
+    assert packed.tolist() == [[[33 * 4 + 2]], [[31 * 4 + 3]], [[30 * 4 + 1]]]
+
+
+@pytest.mark.parametrize("rows", [8, 10, 13])
+def test_six_bits_come_back(rows):
+    numbers = np.random.default_rng(rows).integers(-31, 32, (rows, 5)).astype(np.int8)
+    nodes, constants = unpack_six_bits("w", "packed", numbers.shape)
+    constants.append(numpy_helper.from_array(pack_six_bits(numbers), "packed"))
+    made = helper.make_tensor_value_info("w", TensorProto.FLOAT, numbers.shape)
+    graph = helper.make_graph(nodes, "unpack", [], [made], constants)
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 18)], ir_version=8)
+    session = onnxruntime.InferenceSession(model.SerializeToString(), providers=["CPUExecutionProvider"])
+    assert np.array_equal(session.run(None, {})[0], numbers)
 
 
 def test_quantise_is_within_half_a_step():
