@@ -35,6 +35,8 @@ SIGMAS = (0.05, 0.1, 0.2)
 # What each variation changes against the flags that all runs share, by trainer.
 DANCER = {
     "all of it": [],
+    "SLERP as the base": ["--inbetweener", ""],
+    "a token a frame": ["--patch", "1"],
     "no mirror": ["--mirror", "0"],
     "no change of tempo": ["--tempo", "1", "1"],
     "no music dropout": ["--music-dropout", "0"],

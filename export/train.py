@@ -27,7 +27,7 @@ from model import INPUT_NAMES, KeyPoseDancer, ModelConfig, count_weights
 from record import record_run
 from spec import FPS, MUSIC_FRAMES, ROTATION_SIZE, SEED_FRAMES, spec_hash
 from train_inbetween import load_inbetweener
-from windows import WindowSampler, collate, cut_window
+from windows import Augmentation, WindowSampler, collate, cut_window
 
 
 @dataclass
@@ -59,7 +59,9 @@ class TrainConfig:
 class Trainer:
     """Model, optimiser, averaged weights and random state of one run."""
 
-    def __init__(self, config: TrainConfig, loss: LossConfig, clips: list[Clip]) -> None:
+    def __init__(
+        self, config: TrainConfig, loss: LossConfig, clips: list[Clip], augmentation: Augmentation | None = None
+    ) -> None:
         torch.manual_seed(config.seed)
         self.config, self.loss_config = config, loss
         model_config = ModelConfig.named(config.model)
@@ -80,7 +82,7 @@ class Trainer:
         self.trained = [parameter for parameter in self.model.parameters() if parameter.requires_grad]
         self.optimiser = torch.optim.AdamW(self.trained, config.lr, betas=(0.9, 0.99), weight_decay=config.weight_decay, fused=True)
         self.scaler = torch.amp.GradScaler(config.device, enabled=config.precision == "fp16")
-        self.sampler = WindowSampler(train, config.tokens, tuple(config.lengths), seed=config.seed)
+        self.sampler = WindowSampler(train, config.tokens, tuple(config.lengths), augmentation, config.seed)
         self.validation = validation_batches([clip for clip in clips if clip.split == "val"])
         self.step, self.seconds = 0, 0.0
 
@@ -210,14 +212,14 @@ def _plain(value):
     return tuple(value) if isinstance(value, list) else value
 
 
-def _parse() -> tuple[argparse.Namespace, TrainConfig, LossConfig]:
+def _parse() -> tuple[argparse.Namespace, TrainConfig, LossConfig, Augmentation]:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", required=True, help="prepared data folder, or AIST++ as downloaded")
     parser.add_argument("--features", help="folder with what export/features.ts wrote for the songs")
     parser.add_argument("--cache", default=str(Path(__file__).parent / "cache"), help="where preprocessed clips are kept")
     parser.add_argument("--out", required=True, help="folder for checkpoint and log")
     parser.add_argument("--threads", type=int, default=0, help="CPU threads (0: torch decides)")
-    configs = (TrainConfig(), LossConfig())
+    configs = (TrainConfig(), LossConfig(), Augmentation())
     for default in configs:
         for name, value in asdict(default).items():
             flag = "--" + name.replace("_", "-")
@@ -233,16 +235,17 @@ def _parse() -> tuple[argparse.Namespace, TrainConfig, LossConfig]:
 
 
 def main() -> None:
-    args, config, loss = _parse()
+    args, config, loss, augmentation = _parse()
     if args.threads:
         torch.set_num_threads(args.threads)
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
-    trainer = Trainer(config, loss, load_clips(args.data, args.features, args.cache))
+    trainer = Trainer(config, loss, load_clips(args.data, args.features, args.cache), augmentation)
     checkpoint = out / "checkpoint.pt"
     if checkpoint.exists():
         trainer.load(checkpoint)
-    record_run(out, args.data, args.features, count_weights(trainer.model), {"config": asdict(config), "loss": asdict(loss)})
+    settings = {"config": asdict(config), "loss": asdict(loss), "augmentation": asdict(augmentation)}
+    record_run(out, args.data, args.features, count_weights(trainer.model), settings)
     with (out / "log.jsonl").open("a", encoding="utf-8") as log:
 
         def write(entry: dict) -> None:

@@ -11,7 +11,7 @@ const request = { clip: stepClip(), grid, keys, from: 0, to: 600, variation: 0.5
 
 describe('filler poses', () => {
   it('stand on beats, keep away from keys and leave short gaps alone', () => {
-    const fillers = fillerPoses(request, headingCurve(keys));
+    const fillers = fillerPoses({ ...request, variation: 0 }, headingCurve(keys));
     const beats = new Set(grid.beats.map((beat) => Math.round(beat * 30)));
     expect(fillers.length).toBeGreaterThan(25);
     for (const { frame } of fillers) {
@@ -19,6 +19,22 @@ describe('filler poses', () => {
       for (const other of keys) expect(Math.abs(frame - other.frame)).toBeGreaterThanOrEqual(KEY_DISTANCE * 30);
       expect(frame > 4.3 * 30 && frame < 5.3 * 30).toBe(false);
     }
+  });
+
+  it('take another way through a short gap with each seed when variation is full', () => {
+    const inGap = (seed: number) =>
+      fillerPoses({ ...request, variation: 1, seed }, headingCurve(keys)).filter(
+        ({ frame }) => frame > 4.3 * 30 && frame < 5.3 * 30,
+      );
+    const ways = Array.from({ length: 8 }, (_, seed) => inGap(seed));
+    for (const way of ways) {
+      expect(way).toHaveLength(1);
+      for (const other of keys) expect(Math.abs(way[0].frame - other.frame)).toBeGreaterThanOrEqual(KEY_DISTANCE * 30);
+      for (const v of [0, 4, 40]) expect(Math.hypot(...way[0].quaternions.subarray(v, v + 4))).toBeCloseTo(1, 5);
+    }
+    expect(inGap(3)).toEqual(ways[3]);
+    const different = new Set(ways.map((way) => Array.from(way[0].quaternions, (v) => v.toFixed(3)).join()));
+    expect(different.size).toBe(8);
   });
 
   it('are the same for the same seed and others for another', () => {

@@ -1,6 +1,7 @@
 /**
  * Filler poses: poses of the starting clip on beats where no user key is near. A regression network freezes without keys; with these
- * the stretches between the user's keys dance too. They are input to the network only: no dance is ever corrected to them.
+ * the stretches between the user's keys dance too. In short gaps there are none, unless variation asks for another way from key to key.
+ * They are input to the network only: no dance is ever corrected to them.
  */
 import { beatPhase, type BeatPhase } from './beat-phase';
 import type { FrameKey } from './correction';
@@ -14,13 +15,14 @@ import {
   poseToQuaternions,
   quaternionsToPose,
   quaternionToAxisAngle,
+  slerp,
 } from './rotation';
 import { seedSampler, type SeedSampler } from './seed';
 import { JOINT_COUNT, mirrorPose } from './skeleton';
 import { spec } from './spec';
 import type { BeatGrid, SeedClip } from './types';
 
-/** Gaps up to this long get no filler, seconds. */
+/** Gaps up to this long get no filler but for the sake of variation, seconds. */
 export const LONGEST_GAP = 1.5;
 /** A filler keeps at least this far from a user's key, seconds. */
 export const KEY_DISTANCE = 0.4;
@@ -95,7 +97,11 @@ export function fillerPoses(request: FillerRequest, heading: (frame: number) => 
   const fillers: FrameKey[] = [];
   for (let i = 0; i + 1 < borders.length; i++) {
     const [left, right] = [borders[i], borders[i + 1]];
-    if (right - left <= LONGEST_GAP * fps && i + 2 < borders.length) continue;
+    if (right - left <= LONGEST_GAP * fps && i + 2 < borders.length) {
+      const detour = i > 0 && detourPose(request, phase, dancer, heading, left, right);
+      if (detour) fillers.push(detour);
+      continue;
+    }
     // The start of the dance and its end are no keys: a filler may be right beside them.
     const clearLeft = i === 0 ? left + Math.round(KEY_DISTANCE * fps) : left + KEY_DISTANCE * fps;
     const clearRight = i + 2 === borders.length ? right : right - KEY_DISTANCE * fps;
@@ -107,6 +113,46 @@ export function fillerPoses(request: FillerRequest, heading: (frame: number) => 
     }
   }
   return fillers;
+}
+
+/** How far a detour leans from the straight way towards the clip's pose: at least, and at most at full variation. */
+const LEAN = { least: 0.35, most: 0.8 };
+
+/**
+ * A pose for a short gap: on a beat (else in the middle), part of the way from the straight line between the two keys to the clip's pose.
+ * Whether a gap gets one, where and how far is drawn by the seed, so each seed takes another way through the same keys.
+ */
+function detourPose(
+  { keys, variation, seed }: FillerRequest,
+  phase: BeatPhase,
+  dancer: (beat: number, heading: number) => Float32Array,
+  heading: (frame: number) => number,
+  left: number,
+  right: number,
+): FrameKey | undefined {
+  const margin = KEY_DISTANCE * spec.fps;
+  if (right - left < 2 * margin || variation <= 0) return undefined;
+  const random = seededRandom(seed * 7919 + 104_729 * (left + 1));
+  if (random() >= variation) return undefined;
+  const beats: number[] = [];
+  for (let beat = Math.ceil(phase.at((left + margin) / spec.fps)); ; beat++) {
+    const frame = Math.round(phase.time(beat) * spec.fps);
+    if (frame > right - margin) break;
+    if (frame >= left + margin) beats.push(beat);
+  }
+  const middle = phase.at((left + right) / 2 / spec.fps);
+  const beat = beats.length ? beats[Math.floor(random() * beats.length)] : middle;
+  const frame = Math.round(phase.time(beat) * spec.fps);
+  const [before, after] = [left, right].map((at) => keys.find((key) => key.frame === at)?.quaternions);
+  if (!before || !after) return undefined;
+  // Any beat of the clip will do: which one is part of the draw.
+  const pose = dancer(Math.round(beat) + Math.floor(random() * 8), heading(frame));
+  const lean = LEAN.least + (LEAN.most - LEAN.least) * variation * random();
+  for (let j = 0; j < pose.length; j += 4) {
+    const straight = slerp(before.subarray(j, j + 4), after.subarray(j, j + 4), (frame - left) / (right - left));
+    slerp(straight, pose.subarray(j, j + 4), lean, pose.subarray(j, j + 4));
+  }
+  return { frame, quaternions: pose };
 }
 
 /** Poses of the clip by song beat, bar by bar in a style drawn for each bar. */
