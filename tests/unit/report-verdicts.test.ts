@@ -7,6 +7,7 @@ import {
   beatVerdict,
   errorText,
   footVerdict,
+  freezeVerdict,
   jerkVerdict,
   keyVerdict,
   smoothnessVerdict,
@@ -60,6 +61,8 @@ describe('verdicts', () => {
     expect(jerkVerdict(report({ jerk: NaN }))).toBeNull();
     expect(footVerdict(report({ footSkate: 0.2 }))).toMatchObject({ value: '20', unit: 'cm/s on the floor' });
     expect(footVerdict(report({ footSkate: NaN }))).toBeNull();
+    expect(freezeVerdict(report({ longestFreeze: 1 }))).toMatchObject({ value: '1.0', unit: 's' });
+    expect(freezeVerdict(report({ longestFreeze: 1.1 })).sentence).toMatch(/freezes/);
     expect(smoothnessVerdict(report({ smoothness: 1736.4 }))).toMatchObject({ value: '1,736', unit: 'S_cv' });
     expect(smoothnessVerdict(report({ smoothness: Infinity }))).toBeNull();
   });

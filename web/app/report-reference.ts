@@ -17,6 +17,9 @@ export const REAL_DANCE = {
   footSkate: [0.16, 0.36],
 } as const;
 
+/** A standstill longer than this looks like a fault while the music plays, seconds. */
+export const LONGEST_STANDSTILL = 1;
+
 /** Frames within which a move counts as on the beat wherever one number has to do: 3 frames are a tenth of a second. */
 export const ON_BEAT_FRAMES = 3;
 

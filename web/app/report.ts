@@ -8,6 +8,7 @@ import {
   motionBeats,
   smoothness,
 } from '../core/metrics';
+import { beatConsistency, longestFreeze } from '../core/dance-metrics';
 import { consistencyPerKey, type KeyError } from '../core/report-curves';
 import type { BeatGrid, KeyPose, Motion } from '../core/types';
 
@@ -23,6 +24,10 @@ export interface DanceReport {
   jerk: number;
   /** Share of the beats that have a motion beat within 1, 2, 3, 4, 5 frames. */
   beatHitRate: number[];
+  /** BC, paper B eq. 1: 0..1, how near the motion beats are to the music's. */
+  beatConsistency: number;
+  /** Longest stretch without visible motion, seconds. */
+  longestFreeze: number;
   /** Mean speed of feet on the floor, m/s. */
   footSkate: number;
   /** Kinetic velocity: mean joint speed between each frame and the next, the pelvis held still, m/s; frames - 1 values. */
@@ -44,6 +49,8 @@ export function measureDance(motion: Motion, keyPoses: readonly KeyPose[], grid:
     smoothness: smoothness(motion),
     jerk: meanJerk(motion),
     beatHitRate: [1, 2, 3, 4, 5].map((delta) => beatHitRate(motion, beats, delta)),
+    beatConsistency: beatConsistency(motion, beats),
+    longestFreeze: longestFreeze(motion),
     footSkate: footSkate(motion),
     speed,
     meanSpeed: speed.length ? speed.reduce((sum, value) => sum + value, 0) / speed.length : NaN,

@@ -46,6 +46,8 @@ export const fakeReport: DanceReport = {
   smoothness: 1,
   jerk: 1,
   beatHitRate: [1, 1, 1, 1, 1],
+  beatConsistency: 1,
+  longestFreeze: 0,
   footSkate: 0,
   speed: new Float32Array(0),
   meanSpeed: 0,

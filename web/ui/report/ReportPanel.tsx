@@ -7,7 +7,15 @@ import { Gauge } from './Gauge';
 import { HitCurve } from './HitCurve';
 import { KeyErrors } from './KeyErrors';
 import { SavePicture } from './SavePicture';
-import { beatVerdict, footVerdict, jerkVerdict, keyVerdict, smoothnessVerdict, type Verdict } from './verdicts';
+import {
+  beatVerdict,
+  footVerdict,
+  freezeVerdict,
+  jerkVerdict,
+  keyVerdict,
+  smoothnessVerdict,
+  type Verdict,
+} from './verdicts';
 
 /** How good the dance on stage is. */
 export function ReportPanel() {
@@ -26,6 +34,7 @@ export function ReportPanel() {
   const feet = footVerdict(now);
   const jerk = jerkVerdict(now);
   const smoothness = smoothnessVerdict(now);
+  const freeze = freezeVerdict(now);
   return (
     <>
       {stale.value && generation.value.status === 'idle' && (
@@ -54,6 +63,12 @@ export function ReportPanel() {
             label={`Jerk ${jerk.value} metres per second cubed; real dance lies between ${REAL_DANCE.jerk.join(' and ')}.`}
           />
         )}
+        <p class="report-aside">
+          <strong>
+            Longest standstill {freeze.value} {freeze.unit}
+          </strong>{' '}
+          {freeze.sentence}
+        </p>
         {smoothness && (
           <p class="report-aside">
             <strong>

@@ -100,9 +100,16 @@ export function TradeOffPlot() {
               y={top}
               height={bottom - top}
             />
-            <text class="plot-text" x={PLOT.width - PLOT.right - 6} y={top + 14} text-anchor="end">
-              as lively as real dance
-            </text>
+            {bottom - top > 18 && (
+              <text
+                class="plot-text band"
+                x={(PLOT.left + PLOT.width - PLOT.right) / 2}
+                y={top + 14}
+                text-anchor="middle"
+              >
+                as lively as real dance
+              </text>
+            )}
           </g>
         )}
         <path
@@ -120,7 +127,13 @@ export function TradeOffPlot() {
           ← closer to your poses
         </text>
         <text class="plot-text" x={PLOT.width - PLOT.right} y={PLOT.height - 4} text-anchor="end">
-          ↓ smoother
+          freer →
+        </text>
+        <text class="plot-text" x={PLOT.width - PLOT.right - 4} y={PLOT.top + 14} text-anchor="end">
+          rougher ↑
+        </text>
+        <text class="plot-text" x={PLOT.width - PLOT.right - 4} y={PLOT.height - PLOT.bottom - 8} text-anchor="end">
+          smoother ↓
         </text>
         <g
           role="slider"

@@ -1,6 +1,13 @@
 /** What the report's numbers mean: a value with its unit, and a sentence that says whether it is good. */
 import type { DanceReport } from '../../app/report';
-import { CLOSE_ERROR, degreesPerJoint, EXACT_ERROR, ON_BEAT_FRAMES, REAL_DANCE } from '../../app/report-reference';
+import {
+  CLOSE_ERROR,
+  degreesPerJoint,
+  EXACT_ERROR,
+  LONGEST_STANDSTILL,
+  ON_BEAT_FRAMES,
+  REAL_DANCE,
+} from '../../app/report-reference';
 
 /** A number for people. */
 export interface Verdict {
@@ -62,6 +69,15 @@ export function jerkVerdict({ jerk }: DanceReport): Verdict | null {
         ? 'As lively as people dance.'
         : 'Rougher than people dance: a lower key strength or fewer key poses smooth it.';
   return { value: jerk.toFixed(0), unit: 'm/s³ of jerk', sentence };
+}
+
+/** How long the dancer stands still at most. */
+export function freezeVerdict({ longestFreeze }: DanceReport): Verdict {
+  const sentence =
+    longestFreeze <= LONGEST_STANDSTILL
+      ? 'The dancer never stands still for longer than a held pose.'
+      : 'The dancer freezes: a key pose there, or another take, brings life.';
+  return { value: longestFreeze.toFixed(1), unit: 's', sentence };
 }
 
 /** Paper A's own number for smoothness; null for one too short to say. */
