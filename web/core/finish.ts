@@ -14,7 +14,7 @@ export const SETTLE = Math.ceil(0.7 * spec.fps) + 6;
 
 /** A dance before key poses and floor had their say. */
 export interface UncorrectedDance {
-  /** Corners are rounded and beats accented; nothing else is done to what the network gave. */
+  /** What the network gave, with whatever does not depend on the key strength already done to it. */
   motion: Motion;
   /** How many frames were there each time a stretch was cleaned; the same stretches again give the same dance again. */
   stretches: readonly number[];
