@@ -14,6 +14,9 @@ from spec import FPS, JOINT_COUNT, ROTATION_SIZE
 SHORTEST_SEED = 16  # frames; the course of the last half second tells where the first stretch comes from
 # Beyond this many seconds without a key the in-betweener has nothing to go by; over the next FADE its say goes to zero.
 LONGEST_GAP, FADE = 2.6, 1.4
+# The longer the gap, the less the curve can know and the smaller it is: from 0.5 s to 2 s it is enlarged by up to this much, so that
+# joints of the training dances move as fast as the real ones.
+LIFT = 0.35
 # The pelvis's height leaves that of the seed within this many frames.
 SETTLE = 10
 
@@ -131,7 +134,8 @@ def find_base(
     if inbetweener is not None:
         residual, path = inbetweener(anchors.gap, anchors.fraction)
         say = ((LONGEST_GAP + FADE - anchors.gap.seconds[..., 1:2]) / FADE).clamp(0, 1) * anchors.has_next[..., None].to(residual)
-        columns = _round_corners(turn_columns(columns, residual * say))
+        lift = 1 + LIFT * ((anchors.gap.seconds[..., 1:2] - 0.5) / 1.5).clamp(0, 1)
+        columns = _round_corners(turn_columns(columns, residual * say * lift))
         # A gap has no length at a key itself: the pelvis goes on there as in the frame before.
         path = torch.cat([path, say], -1)
         path = torch.where(anchors.at_key[..., None], torch.cat([path[:, 1:2], path[:, :-1]], 1), path)

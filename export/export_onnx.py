@@ -152,39 +152,66 @@ def pack_six_bits(numbers: np.ndarray) -> np.ndarray:
     return np.stack([first << 2 | fourth >> 4, second << 2 | fourth >> 2 & 3, third << 2 | fourth & 3])
 
 
+# Constants that all unpacking shares.
+_SIX_BIT_CONSTANTS = {
+    "six_quarter": np.float32(0.25),
+    "six_four": np.float32(4),
+    "six_middle": np.float32(32),
+    "six_places": np.array([16, 4, 1], np.float32).reshape(3, 1, 1),
+    "six_axis": np.array([0], np.int64),
+}
+
+
+def six_bit_constants() -> list[TensorProto]:
+    """What every graph that unpacks six bits must hold once."""
+    return [numpy_helper.from_array(value, name) for name, value in _SIX_BIT_CONSTANTS.items()]
+
+
 def unpack_six_bits(name: str, packed: str, shape: tuple[int, int]) -> tuple[list, list]:
     """Nodes and constants that turn packed bytes back into numbers [rows, columns] called `name`; plain arithmetic only."""
     constants = [
-        numpy_helper.from_array(np.float32(0.25), name + "_quarter"),
-        numpy_helper.from_array(np.float32(4), name + "_four"),
-        numpy_helper.from_array(np.float32(32), name + "_middle"),
-        numpy_helper.from_array(np.array([16, 4, 1], np.float32).reshape(3, 1, 1), name + "_places"),
-        numpy_helper.from_array(np.array([0], np.int64), name + "_axis"),
         numpy_helper.from_array(np.array([-1, shape[1]], np.int64), name + "_shape"),
         numpy_helper.from_array(np.array([shape[0]], np.int64), name + "_end"),
     ]
     node = helper.make_node
     nodes = [
         node("Cast", [packed], [name + "_bytes"], to=TensorProto.FLOAT),
-        node("Mul", [name + "_bytes", name + "_quarter"], [name + "_scaled"]),
+        node("Mul", [name + "_bytes", "six_quarter"], [name + "_scaled"]),
         node("Floor", [name + "_scaled"], [name + "_upper"]),  # the first three quarters
-        node("Mul", [name + "_upper", name + "_four"], [name + "_back"]),
+        node("Mul", [name + "_upper", "six_four"], [name + "_back"]),
         node("Sub", [name + "_bytes", name + "_back"], [name + "_lower"]),
-        node("Mul", [name + "_lower", name + "_places"], [name + "_parts"]),
-        node("ReduceSum", [name + "_parts", name + "_axis"], [name + "_fourth"], keepdims=1),
+        node("Mul", [name + "_lower", "six_places"], [name + "_parts"]),
+        node("ReduceSum", [name + "_parts", "six_axis"], [name + "_fourth"], keepdims=1),
         node("Concat", [name + "_upper", name + "_fourth"], [name + "_all"], axis=0),
         node("Reshape", [name + "_all", name + "_shape"], [name + "_rows"]),
-        node("Slice", [name + "_rows", name + "_axis", name + "_end", name + "_axis"], [name + "_real"]),
-        node("Sub", [name + "_real", name + "_middle"], [name]),
+        node("Slice", [name + "_rows", "six_axis", name + "_end", "six_axis"], [name + "_real"]),
+        node("Sub", [name + "_real", "six_middle"], [name]),
     ]
     return nodes, constants
+
+
+def shorten_names(proto: onnx.ModelProto) -> None:
+    """Renames everything inside the graph to short numbers: the exporter's long names make a quarter of a megabyte."""
+    fixed = {value.name for value in (*proto.graph.input, *proto.graph.output)} | {""}
+    short: dict[str, str] = {}
+
+    def rename(name: str) -> str:
+        return name if name in fixed else short.setdefault(name, f"v{len(short):x}")
+
+    for tensor in proto.graph.initializer:
+        tensor.name = rename(tensor.name)
+    for node in proto.graph.node:
+        node.name = ""
+        for names in (node.input, node.output):
+            names[:] = [rename(name) for name in names]
+    del proto.graph.value_info[:]
 
 
 def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
     """A copy with weights stored as `fp16`, `q8` or `q6`; arithmetic stays fp32, so every backend can run it."""
     small = onnx.ModelProto()
     small.CopyFrom(proto)
-    kept, unpack = [], []
+    kept, unpack = six_bit_constants() if form == "q6" else [], []
     for tensor in proto.graph.initializer:
         values = numpy_helper.to_array(tensor)
         if tensor.data_type != TensorProto.FLOAT or values.size < 64:
@@ -214,6 +241,7 @@ def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
     nodes = unpack + list(proto.graph.node)
     del small.graph.node[:]
     small.graph.node.extend(nodes)
+    shorten_names(small)
     set_metadata(small, name, form)
     onnx.checker.check_model(small)
     return small

@@ -11,7 +11,7 @@ import torch
 from onnx import TensorProto, helper, numpy_helper
 
 import golden
-from export_onnx import compress, pack_six_bits, quantise, run_onnx, to_onnx, unpack_six_bits
+from export_onnx import compress, pack_six_bits, quantise, run_onnx, six_bit_constants, to_onnx, unpack_six_bits
 from model import INPUT_NAMES, OUTPUT_NAME, KeyPoseDancer, ModelConfig
 from samples import randomise, synthetic_inputs
 from spec import spec_hash
@@ -43,10 +43,10 @@ def test_compressed_forms_stay_close_and_get_small(light):
     model, proto = light
     inputs = synthetic_inputs(1, 60, 120, 4)
     expected, full = torch_output(model, inputs), proto.ByteSize()
-    for form, share, error in (("fp16", 0.52, 2e-2), ("q8", 0.28, 0.4), ("q6", 0.22, 1.5)):
+    for form, share, error in (("fp16", 0.52, 1e-3), ("q8", 0.28, 0.02), ("q6", 0.22, 0.08)):
         small = compress(proto, form, "light")
         assert small.ByteSize() < share * full
-        assert np.abs(run_onnx(small, inputs, 2) - expected).max() <= error
+        assert np.abs(run_onnx(small, inputs, 2) - expected).mean() <= error
 
 
 def test_plain_operators_and_metadata(light):
@@ -70,7 +70,7 @@ def test_six_bits_by_hand():
 def test_six_bits_come_back(rows):
     numbers = np.random.default_rng(rows).integers(-31, 32, (rows, 5)).astype(np.int8)
     nodes, constants = unpack_six_bits("w", "packed", numbers.shape)
-    constants.append(numpy_helper.from_array(pack_six_bits(numbers), "packed"))
+    constants += [*six_bit_constants(), numpy_helper.from_array(pack_six_bits(numbers), "packed")]
     made = helper.make_tensor_value_info("w", TensorProto.FLOAT, numbers.shape)
     graph = helper.make_graph(nodes, "unpack", [], [made], constants)
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 18)], ir_version=8)

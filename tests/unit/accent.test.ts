@@ -1,8 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { accentBeats } from '../../web/core/accent';
 import { beatPhase } from '../../web/core/beat-phase';
-import { softenCorners } from '../../web/core/correction';
-import { jerkPerFrame, jointSpeed } from '../../web/core/metrics';
+import { jointSpeed } from '../../web/core/metrics';
 import { emptyMotion } from '../../web/core/motion';
 import { axisAngleToQuaternion } from '../../web/core/rotation';
 import { steadyGrid } from './dance';
@@ -26,21 +25,20 @@ describe('accents on the beat', () => {
     for (const frame of [15, 30, 45, 60]) expect(bent.root[frame * 3]).toBeCloseTo(frame, 4);
     for (let t = 1; t < 149; t++) expect(Math.abs(bent.root[t * 3] - t)).toBeLessThan(0.85);
   });
+  it('do not move what is on the frame of a key pose, on the beat or off it', () => {
+    const keyed = accentBeats(
+      arm(150, (t) => t * 0.02),
+      beatPhase(steadyGrid(5, 120, 0.5)),
+      [119, 134],
+      100,
+    );
+    for (const frame of [19, 34]) expect(keyed.root[frame * 3]).toBeCloseTo(frame, 6);
+    const order = Array.from({ length: 149 }, (_, t) => keyed.root[(t + 1) * 3] - keyed.root[t * 3]);
+    expect(Math.min(...order)).toBeGreaterThan(0.3);
+  });
   it('slow down on beats and hurry in between', () => {
     const speed = jointSpeed(bent);
     expect(speed[30] / speed[37]).toBeLessThan(0.6);
     expect(speed[45] / speed[52]).toBeLessThan(0.6);
-  });
-});
-
-describe('softened corners', () => {
-  it('take the jolt out of a change of direction and leave the rest alone', () => {
-    const zigzag = (t: number) => 0.05 * Math.abs((t % 60) - 30);
-    const plain = arm(90, zigzag);
-    const soft = arm(90, zigzag);
-    softenCorners(soft, [30, 60]);
-    expect(Math.max(...jerkPerFrame(soft))).toBeLessThan(0.45 * Math.max(...jerkPerFrame(plain)));
-    expect(soft.quaternions.slice(40 * 96, 50 * 96)).toEqual(plain.quaternions.slice(40 * 96, 50 * 96));
-    expect(soft.quaternions.slice(0, 24 * 96)).toEqual(plain.quaternions.slice(0, 24 * 96));
   });
 });

@@ -3,14 +3,7 @@
  * by the key strength. A key belongs to the frame round(time x fps).
  */
 import { bump } from './interpolate';
-import {
-  axisAngleToQuaternion,
-  conjugate,
-  multiply,
-  poseToQuaternions,
-  quaternionToAxisAngle,
-  slerp,
-} from './rotation';
+import { axisAngleToQuaternion, conjugate, multiply, poseToQuaternions, quaternionToAxisAngle } from './rotation';
 import { JOINT_COUNT } from './skeleton';
 import type { KeyPose, Motion } from './types';
 
@@ -56,50 +49,6 @@ export function correctToKeys(motion: Motion, keys: readonly FrameKey[], strengt
     const after = Math.min(reach, i + 1 < keys.length ? keys[i + 1].frame - key.frame : reach);
     spread(motion, key.frame, residuals[i], before, after, amount);
   });
-}
-
-/** Frames around a key that are smoothed, and the width of the smoothing, frames. */
-const SOFTEN = { reach: 5, sigma: 1.2, radius: 4 };
-
-/**
- * Rounds the corners at the keys, in place: the network's dance is built on straight interpolation from key to key, whose velocity jumps
- * there. Keys that must be exact are restored by `correctToKeys` afterwards.
- * @param frames of the keys
- * @param from frames before it are left alone
- */
-export function softenCorners(motion: Motion, frames: readonly number[], from = 0, to = motion.frames): void {
-  const share = new Float64Array(motion.frames);
-  for (const key of frames) {
-    for (let t = Math.max(from, key - SOFTEN.reach); t < Math.min(to, key + SOFTEN.reach + 1); t++) {
-      share[t] = Math.max(share[t], bump((t - key) / (SOFTEN.reach + 1)));
-    }
-  }
-  const source = motion.quaternions.slice();
-  const mean = [0, 0, 0, 1];
-  for (let t = from; t < to; t++) {
-    if (share[t] === 0) continue;
-    for (let joint = 0; joint < JOINT_COUNT; joint++) {
-      localMean(source, motion.frames, t, joint, mean);
-      const i = (t * JOINT_COUNT + joint) * 4;
-      const q = motion.quaternions.subarray(i, i + 4);
-      slerp(q, mean, share[t], q);
-    }
-  }
-}
-
-/** Gaussian mean of one joint's quaternions around a frame, signs aligned. */
-function localMean(source: Float32Array, frames: number, t: number, joint: number, out: number[]): void {
-  const centre = (t * JOINT_COUNT + joint) * 4;
-  out.fill(0);
-  for (let k = -SOFTEN.radius; k <= SOFTEN.radius; k++) {
-    const i = (Math.min(frames - 1, Math.max(0, t + k)) * JOINT_COUNT + joint) * 4;
-    const weight = Math.exp(-((k / SOFTEN.sigma) ** 2) / 2);
-    let dot = 0;
-    for (let c = 0; c < 4; c++) dot += source[i + c] * source[centre + c];
-    for (let c = 0; c < 4; c++) out[c] += (dot < 0 ? -weight : weight) * source[i + c];
-  }
-  const length = Math.hypot(out[0], out[1], out[2], out[3]);
-  for (let c = 0; c < 4; c++) out[c] /= length;
 }
 
 /** Rotation vectors, 24 x 3, that take the dance's pose at a key's frame to the key (in each joint's parent frame). */

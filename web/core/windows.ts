@@ -5,7 +5,7 @@
 import { accentBeats } from './accent';
 import { beatPhase, type BeatPhase } from './beat-phase';
 import { cleanContacts } from './contact';
-import { correctToKeys, keysOnFrames, softenCorners, type FrameKey } from './correction';
+import { correctToKeys, keysOnFrames, type FrameKey } from './correction';
 import { createCleaner, joinUncorrected, SETTLE, type UncorrectedDance } from './finish';
 import { fillerPoses, headingCurve } from './filler';
 import { fromLocalRows, headingOf, localFrameAt } from './localframe';
@@ -144,11 +144,7 @@ async function generateWhole(
     total,
     all.map((key) => key.frame),
   );
-  const finish = finisher(
-    request,
-    keys,
-    all.map((key) => key.frame),
-  );
+  const finish = finisher(request, keys);
   for (let i = 0; i < plan.length; i++) {
     await addWindow(plan[i], i > 0 ? plan[i - 1] : undefined, raw, seedFrames, request.features, all, runWindow);
     hooks.signal?.throwIfAborted();
@@ -199,7 +195,7 @@ interface Finisher {
  * Turns the raw dance into the finished one, a stretch at a time: a finished frame never changes again, so what is shown while the rest
  * is generated is what stays.
  */
-function finisher(request: GenerationRequest, keys: FrameKey[], corners: number[]): Finisher {
+function finisher(request: GenerationRequest, keys: FrameKey[]): Finisher {
   const { frames, options } = request;
   const uncorrected: Finisher['uncorrected'] = { motion: emptyMotion(frames), stretches: [] };
   const corrected = emptyMotion(frames);
@@ -207,7 +203,7 @@ function finisher(request: GenerationRequest, keys: FrameKey[], corners: number[
   const cleaner = createCleaner(frames, { ...options, keys: keys.map((key) => key.frame) });
   const finish = (raw: Motion, stable: number, last: boolean): Motion => {
     const into = { uncorrected: uncorrected.motion, corrected };
-    correctStretch(raw, into, cleaner.done, last ? frames : stable, keys, corners, phase, options.keyStrength);
+    correctStretch(raw, into, cleaner.done, last ? frames : stable, keys, phase, options.keyStrength);
     if (!last) uncorrected.stretches.push(stable);
     cleaner.clean(corrected, stable, last);
     return cleaner.result();
@@ -222,18 +218,14 @@ function correctStretch(
   done: number,
   readable: number,
   keys: FrameKey[],
-  corners: number[],
   phase: BeatPhase,
   strength: number,
 ): void {
   // Keys reach SETTLE frames back and their residual is taken at their own frame, so start from where none is half applied.
   const from = Math.max(0, done - 2 * SETTLE);
   const cut = sliceMotion(raw, from + seedFrames, readable + seedFrames);
-  softenCorners(
-    cut,
-    corners.map((frame) => frame - from),
-  );
-  const part = accentBeats(cut, phase, from);
+  const exact = keys.map((key) => key.frame);
+  const part = accentBeats(cut, phase, exact, from);
   const keep = Math.max(0, done - from);
   copyFrames(part, keep, part.frames, into.uncorrected, from + keep);
   const inside = keys
@@ -280,13 +272,8 @@ async function generateRange(
     hooks.onPartial?.(previous, (plan[i].end - from) / (total - from), i + 1);
   }
   const made = sliceMotion(raw, seedFrames, seedFrames + frames);
-  softenCorners(
-    made,
-    all.map((key) => key.frame).filter((frame) => frame < to),
-    from,
-    to,
-  );
-  copyFrames(accentBeats(made, beatPhase(request.grid)), from, to, made, from);
+  const exact = userKeys.map((key) => key.frame);
+  copyFrames(accentBeats(made, beatPhase(request.grid), exact), from, to, made, from);
   if (request.previousUncorrected) {
     hooks.onUncorrected?.(joinUncorrected(made, previous, request.previousUncorrected, from, to));
   }
@@ -294,7 +281,6 @@ async function generateRange(
   correctToKeys(made, userKeys, options.keyStrength);
   const output = sliceMotion(previous, 0, frames);
   if (options.cleanFeet) {
-    const exact = userKeys.map((key) => key.frame);
     cleanContacts(made, output, from, to, { keys: exact, keyStrength: options.keyStrength, fixedAfter: to < frames });
   } else {
     copyFrames(made, from, to, output, from);
