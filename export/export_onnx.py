@@ -6,7 +6,7 @@ fp32   as trained
 fp16   weights stored in half precision + Cast (all arithmetic stays fp32)
 q8     large matrices stored as int8 with a scale per output column + Cast x scale, the rest as fp16
 q6     like q8 with 64 levels, four of them packed into three bytes; the graph unpacks them once, when the session is made
---compare prints size and output error of all forms. The output folder also gets manifest.json and a golden window
+--compare prints size, output error and native speed of all forms. The output folder also gets manifest.json and a golden window
 (golden.json + golden.bin) on which the app checks each backend before it trusts it.
 """
 
@@ -17,7 +17,9 @@ import hashlib
 import io
 import json
 import logging
+import statistics
 import tempfile
+import time
 import warnings
 from pathlib import Path
 
@@ -27,6 +29,7 @@ import onnxruntime
 import torch
 from onnx import TensorProto, helper, numpy_helper
 
+from compress import SMALLEST_QUANTISED, output_axis, pack_six_bits, quantise, shorten_names, six_bit_constants, unpack_six_bits
 from model import INPUT_NAMES, OUTPUT_NAME, KeyPoseDancer, ModelConfig
 from samples import synthetic_inputs
 from spec import MOTION_SIZE, MUSIC_FRAMES, SEED_FRAMES, SPEC, spec_hash
@@ -38,8 +41,6 @@ ATTRIBUTION = (
     "CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217); "
     "Dance with Melody (Tang, Jia, Mao, ACM Multimedia 2018), SMPL fits from an MIT-licensed repository."
 )
-# Matrices below this many numbers (embeddings of positions, biases, norms) gain nothing from 8 bits.
-SMALLEST_QUANTISED = 20_000
 
 
 def load_averaged(path: Path) -> KeyPoseDancer:
@@ -113,100 +114,6 @@ def set_metadata(proto: onnx.ModelProto, name: str, precision: str) -> None:
     proto.producer_name = "posebeat"
 
 
-def _output_axis(proto: onnx.ModelProto, name: str) -> int | None:
-    """Which axis of a weight matrix runs over outputs; None when it is not the weight of a product."""
-    for node in proto.graph.node:
-        if name in node.input:
-            if node.op_type == "MatMul" and node.input[1] == name:
-                return 1
-            if node.op_type == "Gemm" and node.input[1] == name:
-                return 0 if any(a.name == "transB" and a.i for a in node.attribute) else 1
-            return None
-    return None
-
-
-def quantise(weight: np.ndarray, axis: int, levels: int = 127) -> tuple[np.ndarray, np.ndarray]:
-    """Whole numbers in -levels..levels and fp32 scales (one per output) with the clipping that loses least in the squares."""
-    other = 1 - axis
-    peak = np.maximum(np.abs(weight).max(axis=other, keepdims=True), 1e-12)
-    best_scale, best_error = peak / levels, None
-    for clip in (1.0, 0.95, 0.9, 0.85, 0.8, 0.75, 0.7, 0.65, 0.6):
-        scale = peak * clip / levels
-        error = ((np.clip(np.round(weight / scale), -levels, levels) * scale - weight) ** 2).sum(axis=other, keepdims=True)
-        if best_error is None:
-            best_error = error
-        else:
-            better = error < best_error
-            best_scale, best_error = np.where(better, scale, best_scale), np.where(better, error, best_error)
-    return np.clip(np.round(weight / best_scale), -levels, levels).astype(np.int8), best_scale.astype(np.float32)
-
-
-def pack_six_bits(numbers: np.ndarray) -> np.ndarray:
-    """Whole numbers in -31..31 [rows, columns] -> bytes [3, rows / 4 rounded up, columns].
-
-    Row group g of the four quarters of the matrix makes three bytes: each byte has one number in its upper six bits and two
-    bits of the fourth number in its lower two. Missing rows are zero.
-    """
-    numbers = np.pad(numbers, ((0, -len(numbers) % 4), (0, 0)))
-    first, second, third, fourth = (numbers + 32).astype(np.uint8).reshape(4, -1, numbers.shape[1])
-    return np.stack([first << 2 | fourth >> 4, second << 2 | fourth >> 2 & 3, third << 2 | fourth & 3])
-
-
-# Constants that all unpacking shares.
-_SIX_BIT_CONSTANTS = {
-    "six_quarter": np.float32(0.25),
-    "six_four": np.float32(4),
-    "six_middle": np.float32(32),
-    "six_places": np.array([16, 4, 1], np.float32).reshape(3, 1, 1),
-    "six_axis": np.array([0], np.int64),
-}
-
-
-def six_bit_constants() -> list[TensorProto]:
-    """What every graph that unpacks six bits must hold once."""
-    return [numpy_helper.from_array(value, name) for name, value in _SIX_BIT_CONSTANTS.items()]
-
-
-def unpack_six_bits(name: str, packed: str, shape: tuple[int, int]) -> tuple[list, list]:
-    """Nodes and constants that turn packed bytes back into numbers [rows, columns] called `name`; plain arithmetic only."""
-    constants = [
-        numpy_helper.from_array(np.array([-1, shape[1]], np.int64), name + "_shape"),
-        numpy_helper.from_array(np.array([shape[0]], np.int64), name + "_end"),
-    ]
-    node = helper.make_node
-    nodes = [
-        node("Cast", [packed], [name + "_bytes"], to=TensorProto.FLOAT),
-        node("Mul", [name + "_bytes", "six_quarter"], [name + "_scaled"]),
-        node("Floor", [name + "_scaled"], [name + "_upper"]),  # the first three quarters
-        node("Mul", [name + "_upper", "six_four"], [name + "_back"]),
-        node("Sub", [name + "_bytes", name + "_back"], [name + "_lower"]),
-        node("Mul", [name + "_lower", "six_places"], [name + "_parts"]),
-        node("ReduceSum", [name + "_parts", "six_axis"], [name + "_fourth"], keepdims=1),
-        node("Concat", [name + "_upper", name + "_fourth"], [name + "_all"], axis=0),
-        node("Reshape", [name + "_all", name + "_shape"], [name + "_rows"]),
-        node("Slice", [name + "_rows", "six_axis", name + "_end", "six_axis"], [name + "_real"]),
-        node("Sub", [name + "_real", "six_middle"], [name]),
-    ]
-    return nodes, constants
-
-
-def shorten_names(proto: onnx.ModelProto) -> None:
-    """Renames everything inside the graph to short numbers: the exporter's long names make a quarter of a megabyte."""
-    fixed = {value.name for value in (*proto.graph.input, *proto.graph.output)} | {""}
-    short: dict[str, str] = {}
-
-    def rename(name: str) -> str:
-        return name if name in fixed else short.setdefault(name, f"v{len(short):x}")
-
-    for tensor in proto.graph.initializer:
-        tensor.name = rename(tensor.name)
-    for node in proto.graph.node:
-        node.name = ""
-        for names in (node.input, node.output):
-            names[:] = [rename(name) for name in names]
-    del proto.graph.value_info[:]
-
-
 def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
     """A copy with weights stored as `fp16`, `q8` or `q6`; arithmetic stays fp32, so every backend can run it."""
     small = onnx.ModelProto()
@@ -217,7 +124,7 @@ def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
         if tensor.data_type != TensorProto.FLOAT or values.size < 64:
             kept.append(tensor)
             continue
-        axis = _output_axis(proto, tensor.name)
+        axis = output_axis(proto, tensor.name)
         stored = tensor.name + "_stored"
         if form in ("q8", "q6") and axis is not None and values.ndim == 2 and values.size >= SMALLEST_QUANTISED:
             six = form == "q6"
@@ -255,6 +162,22 @@ def run_onnx(proto: onnx.ModelProto | bytes, inputs: dict[str, torch.Tensor], th
     data = proto if isinstance(proto, bytes) else proto.SerializeToString()
     session = onnxruntime.InferenceSession(data, options, providers=["CPUExecutionProvider"])
     return session.run([OUTPUT_NAME], {name: inputs[name].numpy() for name in INPUT_NAMES})[0]
+
+
+def window_milliseconds(data: bytes, inputs: dict[str, torch.Tensor], runs: int = 9) -> tuple[float, float]:
+    """CPU milliseconds of one thread: to make a session, and median of a window (the first two are not counted)."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads, options.log_severity_level = 1, 3
+    started = time.process_time()
+    session = onnxruntime.InferenceSession(data, options, providers=["CPUExecutionProvider"])
+    load = time.process_time() - started
+    feed = {name: inputs[name].numpy() for name in INPUT_NAMES}
+    times = []
+    for _ in range(runs + 2):
+        started = time.process_time()
+        session.run([OUTPUT_NAME], feed)
+        times.append(time.process_time() - started)
+    return load * 1000, statistics.median(times[2:]) * 1000
 
 
 def write_golden(folder: Path, model: KeyPoseDancer, shipped: bytes, seed_frames: int = 60, frames: int = 120) -> float:
@@ -314,7 +237,7 @@ def main() -> None:
     parser.add_argument("--name", default="light")
     parser.add_argument("--form", choices=["fp32", "fp16", "q8", "q6"], default="q8")
     parser.add_argument("--out", required=True, help="folder for NAME.onnx, manifest.json, golden.json and golden.bin")
-    parser.add_argument("--compare", action="store_true", help="print size and error of every form")
+    parser.add_argument("--compare", action="store_true", help="print size, error and speed of every form")
     args = parser.parse_args()
     model = load_averaged(Path(args.checkpoint))
     steps = torch.load(args.checkpoint, weights_only=True, map_location="cpu")["step"]
@@ -328,7 +251,9 @@ def main() -> None:
         reference = model(*(inputs[name] for name in INPUT_NAMES)).numpy()
     for form, proto in forms.items():
         data = proto.SerializeToString()
-        print(f"{form}: {len(data) / 1e6:.2f} MB, max |output - torch fp32| {np.abs(run_onnx(data, inputs) - reference).max():.2e}")
+        print(f"{form}: {len(data) / 1e6:.2f} MB, max |output - torch fp32| {np.abs(run_onnx(data, inputs) - reference).max():.2e}", end="")
+        load, window = window_milliseconds(data, inputs) if args.compare else (0, 0)
+        print(f", session {load:.0f} ms, window {window:.0f} ms" if args.compare else "")
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     data = forms[args.form].SerializeToString()

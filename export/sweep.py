@@ -37,6 +37,7 @@ DANCER = {
     "all of it": [],
     "SLERP as the base": ["--inbetweener", ""],
     "a token a frame": ["--patch", "1"],
+    "the large model": ["--model", "large"],
     "no mirror": ["--mirror", "0"],
     "no change of tempo": ["--tempo", "1", "1"],
     "no music dropout": ["--music-dropout", "0"],

@@ -11,7 +11,8 @@ import torch
 from onnx import TensorProto, helper, numpy_helper
 
 import golden
-from export_onnx import compress, pack_six_bits, quantise, run_onnx, six_bit_constants, to_onnx, unpack_six_bits
+from compress import pack_six_bits, quantise, six_bit_constants, unpack_six_bits
+from export_onnx import compress, run_onnx, to_onnx
 from model import INPUT_NAMES, OUTPUT_NAME, KeyPoseDancer, ModelConfig
 from samples import randomise, synthetic_inputs
 from spec import spec_hash
