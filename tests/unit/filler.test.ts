@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { keysOnFrames } from '../../web/core/correction';
-import { fillerPoses, headingCurve, KEY_DISTANCE } from '../../web/core/filler';
+import { FIRST_TAKE, fillerPoses, headingCurve, KEY_DISTANCE } from '../../web/core/filler';
 import { headingOf } from '../../web/core/localframe';
 import { key, poseWith, steadyGrid, stepClip } from './dance';
 
@@ -35,6 +35,21 @@ describe('filler poses', () => {
     expect(inGap(3)).toEqual(ways[3]);
     const different = new Set(ways.map((way) => Array.from(way[0].quaternions, (v) => v.toFixed(3)).join()));
     expect(different.size).toBe(8);
+  });
+
+  it('leave short gaps to the network in the first take unless more variation is asked for', () => {
+    const inGap = (variation: number, seed: number) =>
+      fillerPoses({ ...request, variation, seed }, headingCurve(keys)).filter(
+        ({ frame }) => frame > 4.3 * 30 && frame < 5.3 * 30,
+      ).length;
+    expect(inGap(FIRST_TAKE.variation, FIRST_TAKE.seed)).toBe(0);
+    expect(inGap(1, FIRST_TAKE.seed)).toBe(1);
+    const others = Array.from({ length: 40 }, (_, i) => inGap(FIRST_TAKE.variation, i + 2));
+    // Seven of ten are expected; 40 draws leave 16..39 far below one in a million.
+    const varied = others.reduce((sum, count) => sum + count, 0);
+    expect(varied).toBeGreaterThan(15);
+    expect(varied).toBeLessThan(40);
+    expect(inGap(0, 5)).toBe(0);
   });
 
   it('are the same for the same seed and others for another', () => {

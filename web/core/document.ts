@@ -1,5 +1,6 @@
 /** The project document: what a visitor made, as plain JSON. The song's sound and the dance itself are not part of it. */
 import * as v from 'valibot';
+import { FIRST_TAKE } from './filler';
 import spec from './spec.json';
 import type { BeatGrid, KeyPose } from './types';
 
@@ -84,7 +85,7 @@ const dialSchemas = {
 };
 
 /** The dials of a new project: exact keys, a little life. */
-export const DEFAULT_DIALS: Readonly<Dials> = { keyStrength: 1, variation: 0.3, seed: 1, seedClip: '' };
+export const DEFAULT_DIALS: Readonly<Dials> = { keyStrength: 1, ...FIRST_TAKE, seedClip: '' };
 
 /** An empty project. */
 export function createDocument(

@@ -22,8 +22,10 @@ import { JOINT_COUNT, mirrorPose } from './skeleton';
 import { spec } from './spec';
 import type { BeatGrid, SeedClip } from './types';
 
-/** Gaps up to this long get no filler but for the sake of variation, seconds. */
-export const LONGEST_GAP = 1.5;
+/** Gaps up to this long get no filler but for the sake of variation, seconds: the in-betweener was trained on gaps of up to 2.6 s. */
+export const LONGEST_GAP = 2.5;
+/** The dials of a first take: up to this variation it goes the network's own way from key to key; the other takes are there to differ. */
+export const FIRST_TAKE = { seed: 1, variation: 0.3 };
 /** A filler keeps at least this far from a user's key, seconds. */
 export const KEY_DISTANCE = 0.4;
 /** A body turns at most this fast between two keys' headings, radians a second. */
@@ -115,6 +117,13 @@ export function fillerPoses(request: FillerRequest, heading: (frame: number) => 
   return fillers;
 }
 
+/** How likely a short gap of a take is danced another way than the network's own. */
+function detourChance(variation: number, seed: number): number {
+  if (variation <= 0) return 0;
+  if (seed !== FIRST_TAKE.seed) return Math.min(1, 0.4 + variation);
+  return Math.max(0, (variation - FIRST_TAKE.variation) / (1 - FIRST_TAKE.variation));
+}
+
 /** How far a detour leans from the straight way towards the clip's pose: at least, and at most at full variation. */
 const LEAN = { least: 0.35, most: 0.8 };
 
@@ -131,9 +140,9 @@ function detourPose(
   right: number,
 ): FrameKey | undefined {
   const margin = KEY_DISTANCE * spec.fps;
-  if (right - left < 2 * margin || variation <= 0) return undefined;
+  if (right - left < 2 * margin) return undefined;
   const random = seededRandom(seed * 7919 + 104_729 * (left + 1));
-  if (random() >= variation) return undefined;
+  if (random() >= detourChance(variation, seed)) return undefined;
   const beats: number[] = [];
   for (let beat = Math.ceil(phase.at((left + margin) / spec.fps)); ; beat++) {
     const frame = Math.round(phase.time(beat) * spec.fps);
