@@ -1,7 +1,7 @@
 """Dances as the page makes them: jobs for export/finish.ts, and what came back.
 
 Keys, music and beats are the clip's; the dance goes on from the clip's real first 2 s. Between keys more than
-1.5 s apart the page would put filler poses of its starting clip; they are off wherever a dance is compared with a real one.
+2.5 s apart the page would put filler poses of its starting clip; they are off wherever a dance is compared with a real one.
 """
 
 from __future__ import annotations
