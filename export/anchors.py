@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from inbetween import Gap, Inbetweener, body_joints, level_heading
-from rotation import gram_schmidt, matrix_to_quaternion, quaternion_to_matrix, slerp
+from inbetween import Gap, Inbetweener, body_joints
+from rotation import gram_schmidt, six_d_to_matrix, slerp_matrices
 from spec import FPS, JOINT_COUNT, ROTATION_SIZE
 
 SHORTEST_SEED = 16  # frames; the course of the last half second tells where the first stretch comes from
@@ -61,8 +61,7 @@ def look_up(table: Tensor, index: Tensor) -> Tensor:
 
 def _pose_table(rotations: Tensor) -> Tensor:
     """6D rows [B, N, 144] -> orthonormal matrices and joint positions [B, N, 9 * 24 + 72]."""
-    six_d = rotations.unflatten(-1, (JOINT_COUNT, 6))
-    matrices = torch.stack(gram_schmidt(six_d[..., :3], six_d[..., 3:]), -1)
+    matrices = six_d_to_matrix(rotations.unflatten(-1, (JOINT_COUNT, 6)))
     return torch.cat([matrices.flatten(-3), body_joints(matrices)], -1)
 
 
@@ -109,8 +108,8 @@ def find_anchors(seed: Tensor, key_poses: Tensor, to_previous: Tensor, to_next: 
 
 def slerp_columns(anchors: Anchors) -> tuple[Tensor, Tensor, Tensor]:
     """SLERP between the anchors: three columns [B, T, J, 3] of each rotation."""
-    before, after = (matrix_to_quaternion(anchors.gap.poses[k]) for k in (1, 2))
-    return quaternion_to_matrix(slerp(before, after, anchors.fraction[..., None, None])).unbind(-1)
+    _, before, after, _ = anchors.gap.poses
+    return slerp_matrices(before, after, anchors.fraction[..., None, None]).unbind(-1)
 
 
 def turn_columns(columns: tuple[Tensor, Tensor, Tensor], residual: Tensor) -> tuple[Tensor, Tensor, Tensor]:

@@ -52,16 +52,16 @@ def body_joints(matrices: Tensor) -> Tensor:
     return forward_kinematics(torch.cat([still, matrices[..., 1:, :, :]], -3)).flatten(-2)
 
 
-def level_heading(pelvis: Tensor) -> tuple[Tensor, Tensor]:
-    """Pelvis [..., 3, 3] -> (sine, cosine) [..., 1] of the direction its forward axis has on the floor."""
-    flat = unit(torch.cat([pelvis[..., 0, 2, None], pelvis[..., 2, 2, None]], -1))
+def level_heading(forward: Tensor) -> tuple[Tensor, Tensor]:
+    """Forward axis of a pelvis [..., 3] -> (sine, cosine) [..., 1] of its direction on the floor."""
+    flat = unit(torch.cat([forward[..., :1], forward[..., 2:]], -1))
     sine, cosine = flat.split(1, -1)
     return sine, cosine
 
 
 def gap_features(gap: Gap) -> Tensor:
     """[..., GAP_SIZE], the same wherever the dancer stands and faces."""
-    sine, cosine = level_heading(gap.poses[1][..., 0, :, :])
+    sine, cosine = level_heading(gap.poses[1][..., 0, :, 2])
     sine, cosine = sine[..., None], cosine[..., None]
     parts = []
     for matrices, places in zip(gap.poses, gap.joints):

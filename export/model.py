@@ -28,8 +28,7 @@ import torch
 from torch import Tensor, nn
 
 from anchors import GAP_FEATURES, POSE_FEATURES, Base, find_base, turn_columns
-from inbetween import Inbetweener, InbetweenConfig
-from rotation import unit
+from inbetween import Inbetweener, InbetweenConfig, level_heading
 from spec import FEATURE_COUNT, FPS, MAX_FRAMES, MOTION_SIZE, ROTATION_SIZE
 
 INPUT_NAMES = ("music", "seed", "key_poses", "key_mask", "to_previous", "to_next")
@@ -287,8 +286,7 @@ class KeyPoseDancer(nn.Module):
         base_side, base_forward = base.velocity.split(1, -1)
         side, forward = side + base_side, forward + base_forward
         facing = base.columns[2][:, :, 0]  # [B, T, 3] forward axis of the base pelvis
-        flat = unit(torch.cat([facing[..., :1], facing[..., 2:]], -1))
-        sine, cosine = flat.split(1, -1)
+        sine, cosine = level_heading(facing)
         velocity = torch.cat([cosine * side + sine * forward, cosine * forward - sine * side], -1) / FPS
         path = torch.cumsum(velocity, 1)
         return base.root + torch.cat([path[..., :1], up, path[..., 1:]], -1)

@@ -109,6 +109,11 @@ def slerp(a: Tensor, b: Tensor, fraction: Tensor) -> Tensor:
     return mixed / mixed.norm(dim=-1, keepdim=True)
 
 
+def slerp_matrices(a: Tensor, b: Tensor, fraction: Tensor) -> Tensor:
+    """`slerp` of rotation matrices [..., 3, 3]; `fraction` [..., 1]."""
+    return quaternion_to_matrix(slerp(matrix_to_quaternion(a), matrix_to_quaternion(b), fraction))
+
+
 def angle_between(a: Tensor, b: Tensor) -> Tensor:
     """Geodesic angle [...] in radians between matrices [..., 3, 3]; atan2 keeps its digits near 0 and pi."""
     quaternion = matrix_to_quaternion(a.transpose(-1, -2) @ b)

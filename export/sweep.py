@@ -28,6 +28,7 @@ from data import Clip, load_clips
 from evaluation.runners import torch_runner
 from evaluation.table import core_table
 from evaluation.tables import grid, number
+from evaluation.tally import COLUMNS
 
 HERE = Path(__file__).parent
 LAMBDAS = (0.0, 1.0, 3.0, 5.0)
@@ -59,21 +60,12 @@ INBETWEENER = {
     "no position loss": ["--position", "0"],
     "no rotation loss": ["--rotation", "0"],
     "every frame equally often": ["--aist", "1"],
-    "no weight decay": ["--weight_decay", "0"],
+    "no weight decay": ["--weight-decay", "0"],
 }
 ABLATIONS: dict[str, dict[str, list[str]]] = {"train.py": DANCER, "train_inbetween.py": INBETWEENER}
-MEASURES = (
-    ("position_cm", "position error, cm"),
-    ("rotation_deg", "rotation error, deg"),
-    ("E_c", "E_c"),
-    ("S_cv", "S_cv"),
-    ("speed_ratio", "speed / real"),
-    ("jerk_ratio", "jerk / real"),
-    ("skate_ratio", "skate / real"),
-    ("hit3", "beat hit 3"),
-    ("NPSS", "NPSS"),
-    ("PFD", "PFD, cm2"),
-)
+# Columns of the evaluation's table that the ablations show.
+SHOWN = {"position_cm", "rotation_deg", "E_c", "S_cv", "speed_ratio", "jerk_ratio", "skate_ratio", "hit3", "NPSS", "PFD"}
+MEASURES = tuple((name, f"beat hit {title}" if name == "hit3" else title) for name, title in COLUMNS if name in SHOWN)
 
 
 @dataclass

@@ -8,7 +8,6 @@ repeat the run (command, data hash, git commit) lie in --out.
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import copy
 import json
@@ -27,6 +26,7 @@ from model import INPUT_NAMES, KeyPoseDancer, ModelConfig, count_weights
 from record import record_run
 from spec import FPS, MUSIC_FRAMES, ROTATION_SIZE, SEED_FRAMES, spec_hash
 from train_inbetween import load_inbetweener
+from training import cosine_rate, follow, parse_flags, save_whole
 from windows import Augmentation, WindowSampler, collate, cut_window
 
 
@@ -91,8 +91,7 @@ class Trainer:
         c = self.config
         if c.schedule == "paper":
             return c.lr * (1.0 if self.step < 100_000 else 0.1 if self.step < 250_000 else 0.01)
-        warm = min(1.0, (self.step + 1) / c.warmup)
-        return c.lr * warm * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * self.progress())))
+        return cosine_rate(c.lr, self.step, c.warmup, self.progress())
 
     def progress(self) -> float:
         """How much of the run is done, 0..1."""
@@ -129,10 +128,7 @@ class Trainer:
         self.scaler.step(self.optimiser)
         self.scaler.update()
         self.step += 1
-        # A young average must forget the initial weights quickly.
-        decay = min(c.ema, (1 + self.step) / (10 + self.step))
-        with torch.no_grad():
-            torch._foreach_lerp_(list(self.averaged.parameters()), list(self.model.parameters()), 1 - decay)
+        follow(self.averaged, self.model, c.ema, self.step)
         self.seconds += time.monotonic() - started
         return {"loss": float(loss.detach()), **terms, "lr": rate, "grad": float(norm)}
 
@@ -178,8 +174,7 @@ class Trainer:
             "sampler_rng": self.sampler.rng.get_state(),
             "torch_rng": torch.get_rng_state(),
         }
-        torch.save(state, path.with_suffix(".tmp"))
-        path.with_suffix(".tmp").replace(path)
+        save_whole(state, path)
 
     def load(self, path: Path) -> None:
         """Continues from a checkpoint. Raises ValueError when it was made for another spec."""
@@ -208,34 +203,8 @@ def validation_batches(clips: list[Clip], spacing: int = FPS, most: int = 24) ->
     return [collate(windows[i : i + 6]) for i in range(0, len(windows), 6)]
 
 
-def _plain(value):
-    return tuple(value) if isinstance(value, list) else value
-
-
-def _parse() -> tuple[argparse.Namespace, TrainConfig, LossConfig, Augmentation]:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", required=True, help="prepared data folder, or AIST++ as downloaded")
-    parser.add_argument("--features", help="folder with what export/features.ts wrote for the songs")
-    parser.add_argument("--cache", default=str(Path(__file__).parent / "cache"), help="where preprocessed clips are kept")
-    parser.add_argument("--out", required=True, help="folder for checkpoint and log")
-    parser.add_argument("--threads", type=int, default=0, help="CPU threads (0: torch decides)")
-    configs = (TrainConfig(), LossConfig(), Augmentation())
-    for default in configs:
-        for name, value in asdict(default).items():
-            flag = "--" + name.replace("_", "-")
-            if isinstance(value, bool):
-                parser.add_argument(flag, action="store_true", default=value)
-            elif isinstance(value, tuple):
-                parser.add_argument(flag, type=type(value[0]) if value else float, nargs="+", default=value)
-            else:
-                parser.add_argument(flag, type=type(value), default=value)
-    args = parser.parse_args()
-    filled = [type(default)(**{name: _plain(getattr(args, name)) for name in asdict(default)}) for default in configs]
-    return args, *filled
-
-
 def main() -> None:
-    args, config, loss, augmentation = _parse()
+    args, (config, loss, augmentation) = parse_flags(__doc__, TrainConfig(), LossConfig(), Augmentation())
     if args.threads:
         torch.set_num_threads(args.threads)
     out = Path(args.out)

@@ -7,7 +7,6 @@ It resumes by itself when --out holds a checkpoint; the log, the checkpoint and 
 
 from __future__ import annotations
 
-import argparse
 import copy
 import json
 import math
@@ -18,12 +17,15 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+from anchors import turn_columns
 from data import Clip, load_clips
 from inbetween import Gap, InbetweenConfig, Inbetweener, body_joints, gap_features, level_heading, sample_curves
+from metrics import matrices_of
 from record import record_run
-from rotation import matrix_to_quaternion, quaternion_to_matrix, six_d_to_matrix, slerp
+from rotation import slerp_matrices
 from skeleton import forward_kinematics, mirror_motion
 from spec import FPS, JOINT_COUNT, MOTION_SIZE, ROTATION_SIZE
+from training import cosine_rate, follow, parse_flags, save_whole
 
 SEED_REACH = 15  # frames from the seed's `earlier` pose to its last (see anchors.py)
 
@@ -62,7 +64,7 @@ class GapSampler:
         self.motion = torch.cat([clip.motion for clip in clips])
         both = torch.cat([self.motion, mirror_motion(self.motion)])
         # Joint positions of every frame once and for all: they are half of a step's work otherwise.
-        joints = torch.cat([forward_kinematics(matrices(rows)).flatten(-2) for rows in both.split(8192)])
+        joints = torch.cat([forward_kinematics(matrices_of(rows)).flatten(-2) for rows in both.split(8192)])
         self.table = torch.cat([both, joints], -1)
         self.whole = torch.cat([clip.valid.all(-1) & clip.root_valid for clip in clips])
         lengths = torch.tensor([clip.frames for clip in clips])
@@ -122,16 +124,17 @@ class GapSampler:
         return torch.lerp(self.table[rows + low], self.table[rows + frames.ceil().long()], part)
 
 
-def matrices(motion: Tensor) -> Tensor:
-    """[..., 147] -> [..., 24, 3, 3]."""
-    return six_d_to_matrix(motion[..., :ROTATION_SIZE].unflatten(-1, (JOINT_COUNT, 6)))
-
-
 def gap_of(batch: dict[str, Tensor]) -> Gap:
     """The gaps of a batch."""
-    poses = matrices(batch["poses"])
+    poses = matrices_of(batch["poses"])
     places = body_joints(poses)
     return Gap(tuple(poses.unbind(1)), tuple(places.unbind(1)), batch["lengths"] / FPS, batch["inner"])
+
+
+def slerp_at(gap: Gap, fraction: Tensor) -> Tensor:
+    """SLERP between the two keys of gaps [n] at `fraction` [n, m, 2] -> rotations [n, m, 2, 24, 3, 3]."""
+    before, after = (gap.poses[k][:, None, None] for k in (1, 2))
+    return slerp_matrices(before, after, fraction[..., None, None])
 
 
 def predict(model: Inbetweener, batch: dict[str, Tensor], noise: float = 0.0) -> tuple[Tensor, Tensor]:
@@ -140,10 +143,7 @@ def predict(model: Inbetweener, batch: dict[str, Tensor], noise: float = 0.0) ->
     fraction = batch["fraction"]
     turns, path = model.curves(gap, noise)
     residual, path = sample_curves(turns[:, None, None], path[:, None, None], fraction)
-    before, after = (matrix_to_quaternion(gap.poses[k])[:, None, None] for k in (1, 2))
-    base = quaternion_to_matrix(slerp(before, after, fraction[..., None, None]))
-    identity = residual.new_tensor([1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
-    return base @ six_d_to_matrix(residual.unflatten(-1, (JOINT_COUNT, 6)) + identity), path
+    return torch.stack(turn_columns(slerp_at(gap, fraction).unbind(-1), residual), -1), path
 
 
 def loss_terms(rotations: Tensor, path: Tensor, batch: dict[str, Tensor]) -> dict[str, Tensor]:
@@ -159,7 +159,7 @@ def loss_terms(rotations: Tensor, path: Tensor, batch: dict[str, Tensor]) -> dic
     difference = (rotations[..., :2] - real_columns).flatten(-2)
     # The real way from frame to frame, turned into the heading of our own pelvis as the model integrates it.
     way = step(target[..., ROTATION_SIZE:])
-    sine, cosine = level_heading(rotations[:, :, 1, 0])
+    sine, cosine = level_heading(rotations[:, :, 1, 0, :, 2])
     x, y, z = way.split(1, -1)
     wanted = torch.cat([cosine * x - sine * z, sine * x + cosine * z], -1)
     apart = (path[:, :, 1][..., [0, 2]] - wanted).abs().sum(-1)
@@ -204,7 +204,7 @@ class InbetweenTrainer:
         """One optimiser step -> the loss terms."""
         started = time.monotonic()
         c = self.config
-        rate = c.lr * min(1.0, (self.step + 1) / c.warmup) * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * self.progress())))
+        rate = cosine_rate(c.lr, self.step, c.warmup, self.progress())
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         batch = self.sampler.batch()
@@ -215,9 +215,7 @@ class InbetweenTrainer:
         torch.nn.utils.clip_grad_norm_(self.model.parameters(), 2.0)
         self.optimiser.step()
         self.step += 1
-        decay = min(c.ema, (1 + self.step) / (10 + self.step))
-        with torch.no_grad():
-            torch._foreach_lerp_(list(self.averaged.parameters()), list(self.model.parameters()), 1 - decay)
+        follow(self.averaged, self.model, c.ema, self.step)
         self.seconds += time.monotonic() - started
         return {"loss": float(loss.detach()), **{name: float(value.detach()) for name, value in terms.items()}}
 
@@ -227,7 +225,7 @@ class InbetweenTrainer:
         result = {}
         for source, batch in self.validation.items():
             rotations, path = predict(self.averaged, batch)
-            flat = predict_slerp(batch)
+            flat = slerp_at(gap_of(batch), batch["fraction"])
             result[f"{source}_cm"] = float(loss_terms(rotations, path, batch)["position"]) * 100
             result[f"{source}_slerp_cm"] = float(loss_terms(flat, path, batch)["position"]) * 100
         return result
@@ -244,8 +242,7 @@ class InbetweenTrainer:
             "seconds": self.seconds,
             "rng": self.sampler.rng.get_state(),
         }
-        torch.save(state, path.with_suffix(".tmp"))
-        path.with_suffix(".tmp").replace(path)
+        save_whole(state, path)
 
     def load(self, path: Path) -> None:
         """Continues from a checkpoint."""
@@ -257,13 +254,6 @@ class InbetweenTrainer:
         self.sampler.rng.set_state(state["rng"])
 
 
-def predict_slerp(batch: dict[str, Tensor]) -> Tensor:
-    """SLERP between the two keys at the batch's moments [n, m, 2, 24, 3, 3]."""
-    poses = matrices(batch["poses"])
-    before, after = (matrix_to_quaternion(poses[:, k])[:, None, None] for k in (1, 2))
-    return quaternion_to_matrix(slerp(before, after, batch["fraction"][..., None, None]))
-
-
 def load_inbetweener(path: Path) -> Inbetweener:
     """The averaged in-betweener of a checkpoint."""
     state = torch.load(path, weights_only=True, map_location="cpu")
@@ -273,21 +263,9 @@ def load_inbetweener(path: Path) -> Inbetweener:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", required=True)
-    parser.add_argument("--features")
-    parser.add_argument("--cache", default=str(Path(__file__).parent / "cache"))
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--threads", type=int, default=0)
-    configs = (InbetweenTraining(), InbetweenConfig())
-    for default in configs:
-        for name, value in asdict(default).items():
-            many = {"nargs": "+"} if isinstance(value, tuple) else {}
-            parser.add_argument("--" + name, type=type(value[0] if many else value), default=value, **many)
-    args = parser.parse_args()
+    args, (config, sizes) = parse_flags(__doc__, InbetweenTraining(), InbetweenConfig())
     if args.threads:
         torch.set_num_threads(args.threads)
-    config, sizes = (type(default)(**{name: getattr(args, name) for name in asdict(default)}) for default in configs)
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     trainer = InbetweenTrainer(config, sizes, load_clips(args.data, args.features, args.cache))

@@ -17,8 +17,7 @@ from train_inbetween import (
     gap_of,
     load_inbetweener,
     loss_terms,
-    matrices,
-    predict_slerp,
+    slerp_at,
 )
 from windows import key_distances
 
@@ -91,14 +90,14 @@ def test_targets_lie_where_the_fractions_say():
     batch = sampler.batch()
     assert batch["fraction"].min() >= 0 and batch["fraction"].max() <= 1
     # The dance of SLERP is off by nothing where a gap is two frames long and by more where it is a second.
-    error = (predict_slerp(batch)[..., :2] - matrices(batch["target"])[..., :2]).abs().amax((-1, -2, -3, -4, -5))
+    error = (slerp_at(gap_of(batch), batch["fraction"])[..., :2] - matrices_of(batch["target"])[..., :2]).abs().amax((-1, -2, -3, -4, -5))
     short, long = batch["lengths"][:, 1] <= 12, batch["lengths"][:, 1] > 40
     assert error[short].mean() < 0.5 * error[long].mean()
 
 
 def test_real_motion_costs_nothing_but_its_path():
     batch = GapSampler([make_clip(400)], InbetweenTraining(gaps=60)).batch()
-    rotations = matrices(batch["target"])
+    rotations = matrices_of(batch["target"])
     terms = loss_terms(rotations, torch.zeros(*batch["fraction"].shape, 3), batch)
     # Joints of frames between two recorded ones are taken along the chord, hence a millimetre.
     assert float(terms["position"]) < 2e-3 and float(terms["rotation"]) < 5e-3 and float(terms["speed"]) < 1e-2
