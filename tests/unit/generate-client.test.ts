@@ -2,19 +2,9 @@ import { describe, expect, it, vi } from 'vitest';
 import type { GenerateReply, GenerateRequest } from '../../web/workers/protocol';
 import { GenerateClient, type GenerateJob } from '../../web/workers/generate-client';
 import { emptyMotion } from '../../web/core/motion';
+import { FakeWorker } from './support/worker';
 
-/** A worker that answers as the test says. */
-class FakeWorker {
-  onmessage: ((event: MessageEvent<GenerateReply>) => void) | null = null;
-  onerror: ((event: ErrorEvent) => void) | null = null;
-  sent: GenerateRequest[] = [];
-  terminate = vi.fn();
-  postMessage(request: GenerateRequest) {
-    this.sent.push(request);
-  }
-  reply(reply: GenerateReply) {
-    this.onmessage?.({ data: reply } as MessageEvent<GenerateReply>);
-  }
+class GenerateWorker extends FakeWorker<GenerateRequest, GenerateReply> {
   last(type: GenerateRequest['type']): number {
     return this.sent.findLast((request) => request.type === type)!.job;
   }
@@ -26,7 +16,7 @@ const job = { frames: 2 } as unknown as GenerateJob;
 const options = { baseUrl: 'https://example.test/app/' };
 
 function started() {
-  const worker = new FakeWorker();
+  const worker = new GenerateWorker();
   const client = new GenerateClient(() => worker as unknown as Worker);
   const loading = client.load(options);
   worker.reply({ type: 'loaded', job: worker.last('load'), ...loaded });
@@ -36,7 +26,7 @@ const tick = () => new Promise((resolve) => setTimeout(resolve));
 
 describe('the client of the generate worker', () => {
   it('loads once, with progress', async () => {
-    const worker = new FakeWorker();
+    const worker = new GenerateWorker();
     const client = new GenerateClient(() => worker as unknown as Worker);
     const onProgress = vi.fn();
     const loading = client.load({ ...options, onProgress });
@@ -62,7 +52,7 @@ describe('the client of the generate worker', () => {
   });
 
   it('can be asked again after a failed load', async () => {
-    const worker = new FakeWorker();
+    const worker = new GenerateWorker();
     const client = new GenerateClient(() => worker as unknown as Worker);
     const loading = client.load(options);
     worker.reply({ type: 'error', job: worker.last('load'), message: 'no network' });

@@ -3,24 +3,14 @@ import { createReporter, type TunableDance } from '../../web/app/report-client';
 import type { ReportReply, ReportRequest } from '../../web/app/report-protocol';
 import { emptyMotion } from '../../web/core/motion';
 import { fakeReport } from './support/app';
+import { FakeWorker } from './support/worker';
 
-/** A worker that answers as the test says. */
-class FakeWorker {
-  onmessage: ((event: MessageEvent<ReportReply>) => void) | null = null;
-  onerror: ((event: ErrorEvent) => void) | null = null;
-  sent: ReportRequest[] = [];
-  terminate = vi.fn();
-  postMessage(request: ReportRequest) {
-    this.sent.push(request);
-  }
-  reply(reply: ReportReply) {
-    this.onmessage?.({ data: reply } as MessageEvent<ReportReply>);
-  }
+class ReportWorker extends FakeWorker<ReportRequest, ReportReply> {
   types = () => this.sent.map((request) => ('job' in request ? `${request.type} ${request.job}` : request.type));
 }
 
 function open() {
-  const worker = new FakeWorker();
+  const worker = new ReportWorker();
   const reporter = createReporter(() => worker as unknown as Worker);
   const dance = (): TunableDance => ({
     uncorrected: { motion: emptyMotion(3), stretches: [] },

@@ -1,6 +1,7 @@
 /** What every action works on. */
 import type { Player } from '../audio/player';
 import type { ProjectDocument } from '../core/document';
+import { withGrid } from '../core/features';
 import type { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import type { Backend } from '../workers/protocol';
@@ -32,6 +33,11 @@ export interface Context {
   announce(text: string): void;
   /** Features and beats of the whole song, waiting for the analysis where it still runs. */
   analysed(): Promise<{ features: Features; grid: BeatGrid }>;
+}
+
+/** Music to dance to: what was heard, on the visitor's own beat grid where there is one. */
+export function onGrid(heard: { features: Features; grid: BeatGrid }, own: BeatGrid | null) {
+  return own ? { features: withGrid(heard.features, own), grid: own } : heard;
 }
 
 /** True for the error of a cancelled job. */

@@ -1,9 +1,8 @@
 /** Making dances: loading the model, generating, cancelling, measuring. */
-import { withGrid } from '../../core/features';
 import spec from '../../core/spec.json';
 import type { Motion } from '../../core/types';
 import type { Backend } from '../../workers/protocol';
-import { isAbort, messageOf, type Context } from '../context';
+import { isAbort, messageOf, onGrid, type Context } from '../context';
 import type { DanceResult, ModelInfo } from '../ports';
 import type { Reporter } from '../report-client';
 import { measureDance, type DanceReport } from '../report';
@@ -108,7 +107,7 @@ export function danceActions(context: Context, reporter: Reporter) {
     state.generation.value = { status: 'loading', fraction: 0, bytes: 0, totalBytes: 0, cached: false };
     try {
       await Promise.race([loadModel(call.backend ?? services.forcedBackend), aborted(signal)]);
-      const { features, grid } = await Promise.race([context.analysed(), aborted(signal)]);
+      const heard = await Promise.race([context.analysed(), aborted(signal)]);
       const { document } = state;
       const inputs: DanceInputs = {
         keyPoses: document.value.keyPoses,
@@ -119,8 +118,7 @@ export function danceActions(context: Context, reporter: Reporter) {
       state.generation.value = { status: 'running', fraction: 0, windows: 0 };
       const result = await services.engine.generate(
         {
-          features: inputs.grid ? withGrid(features, inputs.grid) : features,
-          grid: inputs.grid ?? grid,
+          ...onGrid(heard, inputs.grid),
           frames: state.frames.value,
           keyPoses: [...inputs.keyPoses],
           seedClip,

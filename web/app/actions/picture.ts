@@ -1,11 +1,10 @@
 /** A second dance to a stretch of the song, from another starting clip: for the picture of two dances (paper A, figure 8). */
 import { effect } from '@preact/signals';
 import { excerpt } from '../../core/excerpt';
-import { withGrid } from '../../core/features';
 import { sliceMotion } from '../../core/motion';
 import spec from '../../core/spec.json';
 import type { Motion } from '../../core/types';
-import type { Context } from '../context';
+import { onGrid, type Context } from '../context';
 import type { DanceActions } from './dance';
 
 /** Seconds that the second dance has to find into the key poses before the stretch, and that it goes on after it. */
@@ -47,15 +46,14 @@ export function pictureActions(context: Context, dances: DanceActions) {
         const both = AbortSignal.any([signal, interrupted.signal]);
         both.throwIfAborted();
         await dances.loadModel();
-        const { features, grid } = await context.analysed();
+        const heard = await context.analysed();
         both.throwIfAborted();
-        const edited = state.document.value.grid;
-        const { keyPoses, dials } = state.document.value;
+        const { keyPoses, dials, grid } = state.document.value;
         const { fps } = spec;
         const first = Math.floor(range.start * fps);
         const last = Math.min(state.frames.value, Math.ceil(range.end * fps));
         const from = Math.max(0, first - LEAD * fps);
-        const whole = { features: edited ? withGrid(features, edited) : features, grid: edited ?? grid, keyPoses };
+        const whole = { ...onGrid(heard, grid), keyPoses };
         const { keyStrength, variation, seed } = dials;
         const result = await services.engine.generate(
           {

@@ -2,7 +2,7 @@
 import { headingOf } from '../../core/localframe';
 import { framePose } from '../../core/motion';
 import { poseToQuaternions, quaternionsToPose } from '../../core/rotation';
-import { forwardKinematics, PARENTS } from '../../core/skeleton';
+import { forwardKinematics, JOINT_COUNT, jointIndex, JOINTS, PARENTS } from '../../core/skeleton';
 import type { Motion } from '../../core/types';
 import { PAGE } from './picture-layout';
 
@@ -10,6 +10,14 @@ import { PAGE } from './picture-layout';
 const ASIDE = 0.35;
 /** Metres that a figure's cell shows, as the thumbnails do. */
 const VIEW = 1.8;
+const POSE = JOINT_COUNT * 4;
+const HEAD = jointIndex('head');
+
+/** Limbs of the two sides are told apart; collars belong to the trunk. */
+function limbColour(joint: string): string {
+  if (joint.startsWith('left_') && joint !== 'left_collar') return '#6aa5ea';
+  return joint.startsWith('right_') && joint !== 'right_collar' ? '#f08672' : '#dde1e8';
+}
 
 /** Draws poses as pictures of PAGE.figure pixels. */
 export interface FigureArtist {
@@ -56,7 +64,7 @@ export function poseAt(motion: Motion, seconds: number): number[] {
 export function cameraFor(motion: Motion): number {
   let [x, z] = [0, 0];
   for (let t = 0; t < motion.frames; t += 5) {
-    const heading = headingOf(motion.quaternions.subarray(t * 96, t * 96 + 4));
+    const heading = headingOf(motion.quaternions.subarray(t * POSE, t * POSE + 4));
     x += Math.sin(heading);
     z += Math.cos(heading);
   }
@@ -79,12 +87,8 @@ function drawLimbs(rotations: readonly number[], azimuth: number): CanvasImageSo
   brush.lineCap = 'round';
   PARENTS.forEach((parent, joint) => {
     if (parent < 0) return;
-    brush.lineWidth = joint === 15 ? 26 : 12;
-    brush.strokeStyle = [1, 4, 7, 10, 16, 18, 20, 22].includes(joint)
-      ? '#6aa5ea'
-      : [2, 5, 8, 11, 17, 19, 21, 23].includes(joint)
-        ? '#f08672'
-        : '#dde1e8';
+    brush.lineWidth = joint === HEAD ? 26 : 12;
+    brush.strokeStyle = limbColour(JOINTS[joint]);
     brush.beginPath();
     brush.moveTo(...at(parent));
     brush.lineTo(...at(joint));

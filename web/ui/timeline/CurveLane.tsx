@@ -1,18 +1,16 @@
-import { useComputed, useSignalEffect } from '@preact/signals';
-import { useRef } from 'preact/hooks';
+import { useComputed } from '@preact/signals';
 import spec from '../../core/spec.json';
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 import { circlesFit, drawCurves, speedTop } from './draw-curves';
 import { LANES } from './geometry';
+import { usePainter } from './use-painter';
 
 /** Kinetic velocity and motion beats over the music's onsets and beats (paper A, figure 9), on the timeline's own time axis. */
 export function CurveLane() {
   const store = useStore();
   const { state } = store;
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const waiting = useRef(false);
   const picture = useComputed(() => ({
     view: state.view.value,
     width: state.viewWidth.value,
@@ -22,15 +20,7 @@ export function CurveLane() {
     grid: state.grid.value,
     fps: state.dance.value?.motion.fps ?? spec.fps,
   }));
-  useSignalEffect(() => {
-    void picture.value;
-    if (waiting.current) return;
-    waiting.current = true;
-    queueMicrotask(() => {
-      waiting.current = false;
-      if (canvas.current) drawCurves(canvas.current, picture.peek(), Math.min(devicePixelRatio || 1, 2));
-    });
-  });
+  const canvas = usePainter(picture, drawCurves);
 
   const { report } = picture.value;
   const far = useComputed(() => {

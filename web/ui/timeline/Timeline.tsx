@@ -10,14 +10,13 @@ import { LoopHandles } from './LoopHandles';
 import { Playhead } from './Playhead';
 import { ScrollBar } from './ScrollBar';
 import { surface } from './surface';
+import { usePainter } from './use-painter';
 
 /** The timeline: one canvas for what stands still, elements for what can be grabbed. */
 export function Timeline() {
   const store = useStore();
   const { state } = store;
   const box = useRef<HTMLDivElement>(null);
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const waiting = useRef(false);
 
   useEffect(() => {
     const element = box.current!;
@@ -59,16 +58,7 @@ export function Timeline() {
       generating,
     };
   });
-  useSignalEffect(() => {
-    void picture.value;
-    if (waiting.current) return;
-    waiting.current = true;
-    // In the same turn as the elements move, so that poses never part from their stems.
-    queueMicrotask(() => {
-      waiting.current = false;
-      if (canvas.current) drawTimeline(canvas.current, picture.peek(), Math.min(devicePixelRatio || 1, 2));
-    });
-  });
+  const canvas = usePainter(picture, drawTimeline);
 
   const curves = state.curvesShown.value;
   const height = LANES_HEIGHT + (curves ? LANES.curves.height : 0);
