@@ -53,6 +53,7 @@ DANCER = {
 }
 INBETWEENER = {
     "all of it": [],
+    "no mirror": ["--mirror", "0"],
     "no change of tempo": ["--tempo", "1", "1"],
     "no noise on the inputs": ["--noise", "0"],
     "no velocity loss": ["--velocity", "0"],

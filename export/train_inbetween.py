@@ -51,6 +51,7 @@ class InbetweenTraining:
     shortest: float = 0.25  # seconds
     longest: float = 2.6
     tempo: tuple[float, float] = (0.85, 1.2)
+    mirror: float = 0.5  # share of gaps with left and right exchanged
     aist: float = 3.0  # how much oftener a frame of AIST++ is taken: ten genres in a quarter of the minutes
     seed: int = 0
 
@@ -103,7 +104,7 @@ class GapSampler:
         moments = (self._uniform(len(frames), c.moments) * (lengths[:, 1:2] - 1)).floor()
         pairs = torch.stack([moments, moments + 1], -1)  # output frames after `before`
         wanted = frames[:, 1, None, None] + pairs * speed[:, None, None]
-        flip = self._uniform(len(frames)) < 0.5
+        flip = self._uniform(len(frames)) < c.mirror
         return {
             "poses": self._at(frames, flip),
             "poses_whole": self._real(frames).all(-1),

@@ -10,7 +10,8 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 import * as ort from 'onnxruntime-web';
-import { DEFAULT_DIALS, parseDocument, type ProjectDocument } from '../../web/core/document';
+import { createDocument, DEFAULT_DIALS, type ProjectDocument } from '../../web/core/document';
+import { parseDocument } from '../../web/core/document-read';
 import { analyse, withGrid } from '../../web/core/features';
 import { encodeMotion } from '../../web/core/formats/motion-binary';
 import { beatHitRate, consistencyError, footSkate, jointSpeed, meanJerk } from '../../web/core/metrics';
@@ -72,14 +73,8 @@ function demoDocument(duration: number): ProjectDocument {
   const hash = createHash('sha256')
     .update(readFileSync(folder('demo/song.mp3')))
     .digest('hex');
-  return {
-    format: 'posebeat',
-    version: 1,
-    song: { name: 'Warm Circuit', hash, duration, url: 'demo/song.mp3' },
-    grid: demoGrid(),
-    keyPoses,
-    dials: { ...DEFAULT_DIALS, seedClip: SEED_CLIP },
-  };
+  const song = { name: 'Warm Circuit', hash, duration, url: 'demo/song.mp3' };
+  return { ...createDocument(song, { ...DEFAULT_DIALS, seedClip: SEED_CLIP }), grid: demoGrid(), keyPoses };
 }
 
 async function makeDance(document: ProjectDocument, mono: Float32Array, sampleRate: number): Promise<void> {

@@ -2,7 +2,8 @@ import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
 import { axisAngleToEuler, eulerToAxisAngle } from '../../web/app/euler';
 import { angleBetween, axisAngleToQuaternion } from '../../web/core/rotation';
-import { createDocument, parseDocument } from '../../web/core/document';
+import { createDocument } from '../../web/core/document';
+import { parseDocument } from '../../web/core/document-read';
 import { History } from '../../web/core/history';
 
 const angle = fc.double({ min: -3, max: 3, noNaN: true });

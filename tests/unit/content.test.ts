@@ -1,7 +1,7 @@
 import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
-import { parseDocument } from '../../web/core/document';
+import { parseDocument } from '../../web/core/document-read';
 import { decodeMotion } from '../../web/core/formats/motion-binary';
 import { consistencyError, jointSpeed } from '../../web/core/metrics';
 import { angleBetween, axisAngleToQuaternion, poseToQuaternions, rotateVector } from '../../web/core/rotation';

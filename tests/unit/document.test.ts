@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { checkKeyPoses, createDocument, nextKeyId, parseDocument, POSE_SIZE } from '../../web/core/document';
+import { checkKeyPoses, createDocument, nextKeyId, POSE_SIZE } from '../../web/core/document';
+import { parseDocument } from '../../web/core/document-read';
 
 const pose = (value = 0.1) => new Array<number>(POSE_SIZE).fill(value);
 const song = { name: 'a.mp3', hash: 'ab', duration: 10 };
@@ -53,7 +54,7 @@ describe('parseDocument', () => {
   it.each([
     ['a number', 3, /not a Posebeat project/],
     ['another format', { format: 'x', version: 1 }, /not a Posebeat project/],
-    ['a newer version', { format: 'posebeat', version: 2 }, /newer Posebeat/],
+    ['a newer version', { format: 'posebeat', version: 3 }, /newer Posebeat/],
     ['no version', { format: 'posebeat' }, /damaged/],
     ['a hostile number of keys', { format: 'posebeat', version: 1, keyPoses: new Array(6000).fill(0) }, /at most 5000/],
   ])('refuses %s', (_name, input, message) => {
@@ -93,5 +94,44 @@ describe('nextKeyId', () => {
         { id: 'other', time: 0, rotations: [] },
       ]),
     ).toBe('k8');
+  });
+});
+
+describe('a project of version 1', () => {
+  it('opens as version 2 with nothing repaired', () => {
+    const { format, grid, keyPoses, dials } = createDocument(song);
+    expect(parseDocument({ format, version: 1, song, grid, keyPoses, dials })).toEqual({
+      document: createDocument(song),
+      repairs: [],
+    });
+  });
+});
+
+describe('ranges, trim and camera', () => {
+  const range = { id: 'r1', start: 2, end: 4, takes: [{ id: 't1', seed: 3, variation: 0.5 }], chosen: 't1' };
+  it('come back as they were', () => {
+    const document = {
+      ...createDocument(song),
+      trim: { start: 1, end: 9 },
+      ranges: [range],
+      camera: {
+        follows: false,
+        position: [1, 2, 3] as [number, number, number],
+        target: [0, 1, 0] as [number, number, number],
+      },
+      keyPoses: [{ id: 'k1', time: 1, rotations: pose(), locked: true as const, strength: 0.25 }],
+    };
+    expect(parseDocument(JSON.parse(JSON.stringify(document)))).toEqual({ document, repairs: [] });
+  });
+  it.each([
+    ['a trim past the end', { trim: { start: 1, end: 11 } }, /whole song/],
+    ['a trim the wrong way round', { trim: { start: 3, end: 2 } }, /whole song/],
+    ['a range whose take is missing', { ranges: [{ ...range, chosen: 't9' }] }, /ranges/],
+    ['two ranges of one name', { ranges: [range, range] }, /ranges/],
+    ['a camera at no place', { camera: { follows: true, position: [NaN, 0, 0], target: [0, 0, 0] } }, /camera/],
+  ])('repair %s with a word', (_name, damage, message) => {
+    const { repairs } = parseDocument({ ...createDocument(song), ...damage });
+    expect(repairs).toHaveLength(1);
+    expect(repairs[0]).toMatch(message);
   });
 });

@@ -70,4 +70,17 @@ describe('History', () => {
   it('refuses a preview outside a drag', () => {
     expect(() => new History(0).preview(1)).toThrow(/capture/);
   });
+
+  it('amends every state without a step, and redo stays', () => {
+    const history = new History({ pose: 0, camera: 'near' });
+    for (const pose of [1, 2, 3]) history.push({ ...history.present, pose }, `${pose}`);
+    history.undo();
+    history.amend((state) => ({ ...state, camera: 'far' }));
+    expect(history.present).toEqual({ pose: 2, camera: 'far' });
+    expect(history.redo()).toBe(true);
+    expect(history.present).toEqual({ pose: 3, camera: 'far' });
+    for (let n = 0; n < 3; n += 1) history.undo();
+    expect(history.present).toEqual({ pose: 0, camera: 'far' });
+    expect(history.undo()).toBe(false);
+  });
 });

@@ -1,6 +1,6 @@
 /** Files that come with the page, addressed relative to it so that any sub-path works. */
 import * as v from 'valibot';
-import { parseDocument } from '../core/document';
+import { parseDocument } from '../core/document-read';
 import { decodeMotion } from '../core/formats/motion-binary';
 import type { LibraryPose, SeedClip } from '../core/types';
 import type { Assets } from './ports';

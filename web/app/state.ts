@@ -5,7 +5,17 @@ import spec from '../core/spec.json';
 import type { Dials, ProjectDocument, SongReference } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
 import type { TradeOffPoint } from '../core/report-curves';
-import type { BeatGrid, Features, KeyPose, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
+import type {
+  BeatGrid,
+  Features,
+  KeyPose,
+  LibraryPose,
+  Motion,
+  PoseTools,
+  SeedClip,
+  Snap,
+  Waveform,
+} from '../core/types';
 import type { LoopRange } from '../audio/player';
 import type { DanceResult, LoadProgress, ModelInfo } from './ports';
 import type { DanceReport } from './report';
@@ -158,6 +168,20 @@ export function createState() {
     muted: signal(false),
     selection: signal<ReadonlySet<string>>(new Set()),
     draft: signal<PoseDraft | null>(null),
+    poseTools: signal<PoseTools>({
+      mode: 'rotate',
+      space: 'local',
+      limits: true,
+      mirror: false,
+      pins: new Set(),
+      balance: false,
+    }),
+    /** What key poses snap to. */
+    snap: signal<Snap>('beat'),
+    /** The neighbouring key poses as ghosts beside the figure. */
+    onionShown: signal(false),
+    /** The joint whose path through time is drawn, or null. */
+    pathJoint: signal<number | null>(null),
     view: signal<TimelineView>({ start: 0, pixelsPerSecond: 40 }),
     viewWidth: signal(0),
     followPlayhead: signal(true),

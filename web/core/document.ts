@@ -1,8 +1,11 @@
 /** The project document: what a visitor made, as plain JSON. The song's sound and the dance itself are not part of it. */
 import * as v from 'valibot';
+import { rotationsSchema, unit } from './document-schema';
 import { FIRST_TAKE } from './filler';
 import spec from './spec.json';
 import type { BeatGrid, KeyPose } from './types';
+
+export { POSE_SIZE } from './document-schema';
 
 /** The song that a document belongs to. */
 export interface SongReference {
@@ -27,62 +30,65 @@ export interface Dials {
   seedClip: string;
 }
 
-/** A whole project, version 1. Treat it as immutable: every change makes a new one. */
+/** A stretch of the song, seconds; start < end. */
+export interface TimeRange {
+  start: number;
+  end: number;
+}
+
+/** One way to dance a range: the same take of the same project is always the same dance. */
+export interface Take {
+  /** t1, t2... inside its range. */
+  id: string;
+  seed: number;
+  /** 0..1 */
+  variation: number;
+}
+
+/** A range that was made anew on its own, with all its takes; later ranges lie over earlier ones. */
+export interface TakeRange extends TimeRange {
+  /** r1, r2... */
+  id: string;
+  takes: Take[];
+  /** Id of the take on stage; null = the range as the whole dance has it. */
+  chosen: string | null;
+}
+
+/** Where the visitor looks from, metres. */
+export interface CameraView {
+  /** The camera goes along with the dancer. */
+  follows: boolean;
+  position: [number, number, number];
+  target: [number, number, number];
+}
+
+/** A whole project. Treat it as immutable: every change makes a new one. */
 export interface ProjectDocument {
   format: 'posebeat';
-  version: 1;
+  version: 2;
   song: SongReference | null;
+  /** The part of the song to dance to; null = all of it. */
+  trim: TimeRange | null;
   /** The visitor's corrections of the beat grid; null = as analysed. */
   grid: BeatGrid | null;
   /** Ascending in time, never two on one frame. */
   keyPoses: KeyPose[];
+  ranges: TakeRange[];
   dials: Dials;
+  /** Id of the figure that dances. */
+  avatar: string;
+  /** null = the opening view. Not part of undo: `History.amend`. */
+  camera: CameraView | null;
 }
 
 /** The newest version that this code writes and reads. */
-export const DOCUMENT_VERSION = 1;
+export const DOCUMENT_VERSION = 2;
+/** The figure of a new project: our own. */
+export const DEFAULT_AVATAR = 'posebeat';
+/** More ranges, or takes of one, than this is no project of a person. */
+export const MAX_RANGES = 200;
 /** More key poses than this is no project of a person. */
 export const MAX_KEY_POSES = 5000;
-/** Numbers in a pose: three per joint. */
-export const POSE_SIZE = spec.skeleton.joints.length * 3;
-/** Two full turns; a larger number is almost surely degrees. */
-const MAX_RADIANS = 4 * Math.PI;
-const MAX_SEED = 2 ** 31 - 1;
-
-const unit = v.pipe(v.number(), v.minValue(0), v.maxValue(1));
-const seconds = v.pipe(v.number(), v.finite(), v.minValue(0));
-const rotationsSchema = v.pipe(
-  v.array(v.pipe(v.number('must be a number'), v.finite('must be a finite number'))),
-  v.length(POSE_SIZE, `must hold ${POSE_SIZE} numbers (24 joints x 3, axis-angle in radians)`),
-  v.check(
-    (list) => list.every((value) => Math.abs(value) <= MAX_RADIANS),
-    'looks like degrees: give axis-angle in radians',
-  ),
-);
-const keyPoseSchema = v.object({
-  id: v.pipe(v.string(), v.nonEmpty(), v.maxLength(64)),
-  time: seconds,
-  rotations: rotationsSchema,
-  name: v.optional(v.pipe(v.string(), v.maxLength(200))),
-});
-const gridSchema = v.object({
-  tempo: v.pipe(v.number(), v.finite(), v.minValue(20), v.maxValue(400)),
-  beatsPerBar: v.picklist([3, 4]),
-  beats: v.pipe(v.array(seconds), v.maxLength(100_000)),
-  downbeats: v.pipe(v.array(seconds), v.maxLength(100_000)),
-});
-const songSchema = v.object({
-  name: v.pipe(v.string(), v.maxLength(500)),
-  hash: v.pipe(v.string(), v.maxLength(128)),
-  duration: seconds,
-  url: v.optional(v.pipe(v.string(), v.maxLength(2000))),
-});
-const dialSchemas = {
-  keyStrength: unit,
-  variation: unit,
-  seed: v.pipe(v.number(), v.integer(), v.minValue(0), v.maxValue(MAX_SEED)),
-  seedClip: v.pipe(v.string(), v.maxLength(100)),
-};
 
 /** The dials of a new project: exact keys, a little life. */
 export const DEFAULT_DIALS: Readonly<Dials> = { keyStrength: 1, ...FIRST_TAKE, seedClip: '' };
@@ -92,7 +98,18 @@ export function createDocument(
   song: SongReference | null = null,
   dials: Readonly<Dials> = DEFAULT_DIALS,
 ): ProjectDocument {
-  return { format: 'posebeat', version: DOCUMENT_VERSION, song, grid: null, keyPoses: [], dials: { ...dials } };
+  return {
+    format: 'posebeat',
+    version: DOCUMENT_VERSION,
+    song,
+    trim: null,
+    grid: null,
+    keyPoses: [],
+    ranges: [],
+    dials: { ...dials },
+    avatar: DEFAULT_AVATAR,
+    camera: null,
+  };
 }
 
 /** The frame that a time falls on. */
@@ -129,7 +146,7 @@ export function checkKeyPoses(input: unknown, duration: number): KeyPose[] {
   input.forEach((entry: unknown, index) => {
     const where = `Key pose ${index + 1}`;
     if (typeof entry !== 'object' || entry === null) throw new Error(`${where} must be an object {time, rotations}.`);
-    const { time, rotations, name, id } = entry as Record<string, unknown>;
+    const { time, rotations, name, id, locked, strength } = entry as Record<string, unknown>;
     if (typeof time !== 'number' || !Number.isFinite(time))
       throw new Error(`${where}: time must be a number of seconds.`);
     if (time < 0 || time > duration) {
@@ -146,6 +163,11 @@ export function checkKeyPoses(input: unknown, duration: number): KeyPose[] {
     }
     taken.add(own);
     const key: KeyPose = { id: own, time, rotations: [...parsed.output] };
+    if (locked === true) key.locked = true;
+    if (strength !== undefined) {
+      if (!v.is(unit, strength)) throw new Error(`${where}: strength must be a number from 0 to 1.`);
+      key.strength = strength;
+    }
     if (typeof name === 'string' && name !== '') key.name = name.slice(0, 200);
     keys.push(key);
   });
@@ -158,108 +180,4 @@ export function checkKeyPoses(input: unknown, duration: number): KeyPose[] {
     }
   }
   return keys;
-}
-
-/**
- * Reads a document from outside, repairing what can be repaired.
- *
- * @param input - The parsed JSON.
- * @returns The document, and a sentence for each repair.
- * @throws Error with a clear message when it is no Posebeat project, or one of a newer version.
- */
-export function parseDocument(input: unknown): { document: ProjectDocument; repairs: string[] } {
-  if (typeof input !== 'object' || input === null || Array.isArray(input)) {
-    throw new Error('This is not a Posebeat project: choose a file that Posebeat saved.');
-  }
-  const raw = input as Record<string, unknown>;
-  if (raw.format !== 'posebeat') throw new Error('This is not a Posebeat project: choose a file that Posebeat saved.');
-  if (typeof raw.version !== 'number' || !Number.isInteger(raw.version) || raw.version < 1) {
-    throw new Error('This project has no version: the file is damaged.');
-  }
-  if (raw.version > DOCUMENT_VERSION) {
-    throw new Error('This project was made by a newer Posebeat: reload the page to get the newest version.');
-  }
-  const repairs: string[] = [];
-  const song = repairPart(songSchema, raw.song, 'The song’s reference was damaged and left out.', repairs);
-  const grid = repairGrid(raw.grid, repairs);
-  return {
-    document: {
-      format: 'posebeat',
-      version: DOCUMENT_VERSION,
-      song,
-      grid,
-      keyPoses: repairKeys(raw.keyPoses, song?.duration ?? Infinity, repairs),
-      dials: repairDials(raw.dials, repairs),
-    },
-    repairs,
-  };
-}
-
-function repairPart<S extends v.GenericSchema>(
-  schema: S,
-  value: unknown,
-  message: string,
-  repairs: string[],
-): v.InferOutput<S> | null {
-  if (value === null || value === undefined) return null;
-  const parsed = v.safeParse(schema, value);
-  if (parsed.success) return parsed.output;
-  repairs.push(message);
-  return null;
-}
-
-function repairGrid(value: unknown, repairs: string[]): BeatGrid | null {
-  const message = 'The edited beats were damaged: the song’s own beats are used.';
-  const grid = repairPart(gridSchema, value, message, repairs);
-  if (!grid) return null;
-  const ascending = (list: number[]) => list.every((time, i) => i === 0 || time > list[i - 1]);
-  if (ascending(grid.beats) && ascending(grid.downbeats)) return grid;
-  repairs.push(message);
-  return null;
-}
-
-function repairDials(value: unknown, repairs: string[]): Dials {
-  const raw = (typeof value === 'object' && value !== null ? value : {}) as Record<string, unknown>;
-  const dials: Dials = { ...DEFAULT_DIALS };
-  const read = <K extends keyof Dials>(name: K): void => {
-    if (raw[name] === undefined) return;
-    const parsed = v.safeParse(dialSchemas[name], raw[name]);
-    if (parsed.success) dials[name] = parsed.output as Dials[K];
-    else repairs.push(`The setting “${name}” was out of range and set back.`);
-  };
-  read('keyStrength');
-  read('variation');
-  read('seed');
-  read('seedClip');
-  return dials;
-}
-
-function repairKeys(value: unknown, duration: number, repairs: string[]): KeyPose[] {
-  if (value === undefined) return [];
-  if (!Array.isArray(value)) {
-    repairs.push('The key poses were damaged and left out.');
-    return [];
-  }
-  if (value.length > MAX_KEY_POSES)
-    throw new Error(`This project has ${value.length} key poses: at most ${MAX_KEY_POSES}.`);
-  const kept: KeyPose[] = [];
-  const ids = new Set<string>();
-  let broken = 0;
-  for (const entry of value) {
-    const named = typeof entry === 'object' && entry !== null ? { id: nextKeyId(kept), ...entry } : entry;
-    const parsed = v.safeParse(keyPoseSchema, named);
-    if (!parsed.success || parsed.output.time > duration) {
-      broken += 1;
-      continue;
-    }
-    const id = ids.has(parsed.output.id) ? nextKeyId(kept) : parsed.output.id;
-    ids.add(id);
-    kept.push({ ...parsed.output, id });
-  }
-  if (broken > 0) repairs.push(`${broken} damaged key pose${broken === 1 ? ' was' : 's were'} left out.`);
-  const sorted = sortKeys(kept);
-  const doubled = kept.length - sorted.length;
-  if (doubled > 0)
-    repairs.push(`${doubled} key pose${doubled === 1 ? '' : 's'} shared a frame with another and gave way.`);
-  return sorted;
 }

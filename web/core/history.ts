@@ -103,6 +103,15 @@ export class History<T> {
     return true;
   }
 
+  /** Changes what undo does not cover, such as the camera, in every state at once: no step, and redo stays. */
+  amend(edit: (state: T) => T): void {
+    const change = (step: Step<T>) => ({ ...step, state: edit(step.state) });
+    this.#past = this.#past.map(change);
+    this.#future = this.#future.map(change);
+    this.#present = edit(this.#present);
+    if (this.#captured) this.#captured = { state: edit(this.#captured.state) };
+  }
+
   /** Takes the last step back for good: something failed, and redo must not bring it again. */
   abandon(): void {
     const step = this.#past.pop();

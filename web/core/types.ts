@@ -47,6 +47,10 @@ export interface KeyPose {
   /** 24 x 3 axis-angle, radians, SMPL joint order; joint 0 is the world orientation. */
   rotations: number[];
   name?: string;
+  /** Moves and deletions of many at once pass it by. */
+  locked?: true;
+  /** 0..1, times the dial's key strength; missing = 1. */
+  strength?: number;
 }
 
 /** Lowest and highest sample of each bucket of a song, for drawing it. */
@@ -83,3 +87,21 @@ export interface SeedClip {
   /** beats x rate pelvis positions x y z, metres (x, z start at 0; feet on the floor). */
   root: [number, number, number][];
 }
+
+/** How the pose editor works on the figure. */
+export interface PoseTools {
+  /** `move` drags the joint and lets the body follow (inverse kinematics). */
+  mode: 'rotate' | 'move';
+  space: 'local' | 'world';
+  /** Joints stay inside the human range of motion. */
+  limits: boolean;
+  /** What is done to one side is done to the other, mirrored. */
+  mirror: boolean;
+  /** Joints that stay where they are while others are moved. */
+  pins: ReadonlySet<number>;
+  /** Shows the centre of mass over the feet. */
+  balance: boolean;
+}
+
+/** What key poses snap to when they are placed or dragged. */
+export type Snap = 'beat' | 'half' | 'bar' | 'off';

@@ -1,5 +1,6 @@
 /** Opening the page, saving and opening projects. */
-import { parseDocument, type ProjectDocument } from '../../core/document';
+import type { ProjectDocument } from '../../core/document';
+import { parseDocument } from '../../core/document-read';
 import { isAbort, messageOf, type Context } from '../context';
 import type { Song } from '../state';
 import type { DanceActions } from './dance';

@@ -1,0 +1,154 @@
+/** Documents from outside: checked, brought up to the newest version and repaired. */
+import * as v from 'valibot';
+import {
+  DEFAULT_AVATAR,
+  DEFAULT_DIALS,
+  DOCUMENT_VERSION,
+  MAX_KEY_POSES,
+  MAX_RANGES,
+  nextKeyId,
+  sortKeys,
+  type Dials,
+  type ProjectDocument,
+  type TakeRange,
+} from './document';
+import {
+  cameraSchema,
+  dialSchemas,
+  gridSchema,
+  keyPoseSchema,
+  songSchema,
+  takeRangeSchema,
+  timeRangeSchema,
+} from './document-schema';
+import type { BeatGrid, KeyPose } from './types';
+
+/**
+ * Reads a document from outside, repairing what can be repaired.
+ *
+ * @param input - The parsed JSON.
+ * @returns The document, and a sentence for each repair.
+ * @throws Error with a clear message when it is no Posebeat project, or one of a newer version.
+ */
+export function parseDocument(input: unknown): { document: ProjectDocument; repairs: string[] } {
+  if (typeof input !== 'object' || input === null || Array.isArray(input)) {
+    throw new Error('This is not a Posebeat project: choose a file that Posebeat saved.');
+  }
+  const raw = input as Record<string, unknown>;
+  if (raw.format !== 'posebeat') throw new Error('This is not a Posebeat project: choose a file that Posebeat saved.');
+  if (typeof raw.version !== 'number' || !Number.isInteger(raw.version) || raw.version < 1) {
+    throw new Error('This project has no version: the file is damaged.');
+  }
+  if (raw.version > DOCUMENT_VERSION) {
+    throw new Error('This project was made by a newer Posebeat: reload the page to get the newest version.');
+  }
+  const repairs: string[] = [];
+  const song = repairPart(songSchema, raw.song, 'The song’s reference was damaged and left out.', repairs);
+  const duration = song?.duration ?? Infinity;
+  return {
+    document: {
+      format: 'posebeat',
+      version: DOCUMENT_VERSION,
+      song,
+      trim: repairPart(insideSong(duration), raw.trim, 'The trim was damaged: the whole song is used.', repairs),
+      grid: repairGrid(raw.grid, repairs),
+      keyPoses: repairKeys(raw.keyPoses, duration, repairs),
+      ranges: repairRanges(raw.ranges, duration, repairs),
+      dials: repairDials(raw.dials, repairs),
+      avatar: typeof raw.avatar === 'string' && raw.avatar !== '' ? raw.avatar.slice(0, 100) : DEFAULT_AVATAR,
+      camera: repairPart(cameraSchema, raw.camera, 'The camera was damaged: the opening view is shown.', repairs),
+    },
+    repairs,
+  };
+}
+
+function repairPart<S extends v.GenericSchema>(
+  schema: S,
+  value: unknown,
+  message: string,
+  repairs: string[],
+): v.InferOutput<S> | null {
+  if (value === null || value === undefined) return null;
+  const parsed = v.safeParse(schema, value);
+  if (parsed.success) return parsed.output;
+  repairs.push(message);
+  return null;
+}
+
+const insideSong = (duration: number) =>
+  v.pipe(
+    timeRangeSchema,
+    v.check(({ end }) => end <= duration),
+  );
+
+function repairRanges(value: unknown, duration: number, repairs: string[]): TakeRange[] {
+  if (value === undefined) return [];
+  const list: unknown[] = Array.isArray(value) ? value.slice(0, MAX_RANGES) : [];
+  const ids = new Set<string>();
+  const kept = list.flatMap((entry) => {
+    const parsed = v.safeParse(takeRangeSchema, entry);
+    if (!parsed.success || parsed.output.end > duration || ids.has(parsed.output.id)) return [];
+    ids.add(parsed.output.id);
+    return [parsed.output];
+  });
+  if (!Array.isArray(value) || kept.length < value.length) {
+    repairs.push('Some ranges with takes were damaged and left out.');
+  }
+  return kept;
+}
+
+function repairGrid(value: unknown, repairs: string[]): BeatGrid | null {
+  const message = 'The edited beats were damaged: the song’s own beats are used.';
+  const grid = repairPart(gridSchema, value, message, repairs);
+  if (!grid) return null;
+  const ascending = (list: number[]) => list.every((time, i) => i === 0 || time > list[i - 1]);
+  if (ascending(grid.beats) && ascending(grid.downbeats)) return grid;
+  repairs.push(message);
+  return null;
+}
+
+function repairDials(value: unknown, repairs: string[]): Dials {
+  const raw = (typeof value === 'object' && value !== null ? value : {}) as Record<string, unknown>;
+  const dials: Dials = { ...DEFAULT_DIALS };
+  const read = <K extends keyof Dials>(name: K): void => {
+    if (raw[name] === undefined) return;
+    const parsed = v.safeParse(dialSchemas[name], raw[name]);
+    if (parsed.success) dials[name] = parsed.output as Dials[K];
+    else repairs.push(`The setting “${name}” was out of range and set back.`);
+  };
+  read('keyStrength');
+  read('variation');
+  read('seed');
+  read('seedClip');
+  return dials;
+}
+
+function repairKeys(value: unknown, duration: number, repairs: string[]): KeyPose[] {
+  if (value === undefined) return [];
+  if (!Array.isArray(value)) {
+    repairs.push('The key poses were damaged and left out.');
+    return [];
+  }
+  if (value.length > MAX_KEY_POSES)
+    throw new Error(`This project has ${value.length} key poses: at most ${MAX_KEY_POSES}.`);
+  const kept: KeyPose[] = [];
+  const ids = new Set<string>();
+  let broken = 0;
+  for (const entry of value) {
+    const named = typeof entry === 'object' && entry !== null ? { id: nextKeyId(kept), ...entry } : entry;
+    const parsed = v.safeParse(keyPoseSchema, named);
+    if (!parsed.success || parsed.output.time > duration) {
+      broken += 1;
+      continue;
+    }
+    const id = ids.has(parsed.output.id) ? nextKeyId(kept) : parsed.output.id;
+    ids.add(id);
+    kept.push({ ...parsed.output, id });
+  }
+  if (broken > 0) repairs.push(`${broken} damaged key pose${broken === 1 ? ' was' : 's were'} left out.`);
+  const sorted = sortKeys(kept);
+  const doubled = kept.length - sorted.length;
+  if (doubled > 0)
+    repairs.push(`${doubled} key pose${doubled === 1 ? '' : 's'} shared a frame with another and gave way.`);
+  return sorted;
+}
