@@ -56,6 +56,13 @@ export const SHORTCUTS: readonly Shortcut[] = [
     group: 'Key poses',
     run: (store) => store.selectAll(),
   },
+  {
+    id: 'snap',
+    keys: ['S'],
+    label: 'Next snap: bar, beat, half beat, off',
+    group: 'Key poses',
+    run: (store) => store.cycleSnap(),
+  },
   { id: 'undo', keys: ['Mod+Z'], label: 'Undo', group: 'Project', run: (store) => store.undo() },
   { id: 'redo', keys: ['Mod+Shift+Z', 'Mod+Y'], label: 'Redo', group: 'Project', run: (store) => store.redo() },
   {

@@ -1,5 +1,6 @@
 /** Zoom and scroll of the timeline, panels, help. */
 import type { Context } from '../context';
+import type { Snap } from '../../core/types';
 import type { Panel } from '../state';
 
 /** Closest zoom, pixels per second: a frame is 20 px wide. */
@@ -12,8 +13,10 @@ const MIN_OPENING_SCALE = 24;
 /** Where the playhead is put when the view turns its page, as a share of the width. */
 const PAGE_MARGIN = 0.08;
 
+const SNAP_ORDER: readonly Snap[] = ['bar', 'beat', 'half', 'off'];
+
 /** Actions on what is shown. */
-export function viewActions({ state }: Context) {
+export function viewActions({ state, announce }: Context) {
   const fitScale = () => Math.max(1, state.viewWidth.value - 2 * VIEW_PADDING) / Math.max(state.duration.value, 1);
   const set = (start: number, pixelsPerSecond: number) => {
     const width = state.viewWidth.value;
@@ -73,6 +76,14 @@ export function viewActions({ state }: Context) {
       const { start, pixelsPerSecond } = state.view.value;
       const span = state.viewWidth.value / pixelsPerSecond;
       if (time < start || time > start + span * (1 - PAGE_MARGIN / 2)) set(time - span * PAGE_MARGIN, pixelsPerSecond);
+    },
+    /** What key poses snap to. */
+    setSnap: (snap: Snap) => (state.snap.value = snap),
+    /** The next of bar, beat, half beat, off. */
+    cycleSnap(): void {
+      const next = SNAP_ORDER[(SNAP_ORDER.indexOf(state.snap.value) + 1) % SNAP_ORDER.length];
+      state.snap.value = next;
+      announce(next === 'off' ? 'Snapping off.' : `Snaps to ${next === 'half' ? 'half beats' : `${next}s`}.`);
     },
     toggleFollow: () => (state.followPlayhead.value = !state.followPlayhead.value),
     showPanel: (panel: Panel) => (state.panel.value = panel),

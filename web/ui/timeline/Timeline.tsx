@@ -1,6 +1,7 @@
 import { useComputed, useSignalEffect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { useStore } from '../store-context';
+import { BeatLane } from './BeatLane';
 import { CurveLane } from './CurveLane';
 import { drawTimeline } from './draw';
 import { LANES, LANES_HEIGHT } from './geometry';
@@ -8,8 +9,11 @@ import { bindGestures } from './gestures';
 import { KeyLane } from './KeyLane';
 import { LoopHandles } from './LoopHandles';
 import { Playhead } from './Playhead';
+import { RangeLane } from './RangeLane';
 import { ScrollBar } from './ScrollBar';
 import { surface } from './surface';
+import { TimelineBar } from './TimelineBar';
+import { TrimHandles } from './TrimHandles';
 import { usePainter } from './use-painter';
 
 /** The timeline: one canvas for what stands still, elements for what can be grabbed. */
@@ -64,11 +68,15 @@ export function Timeline() {
   const height = LANES_HEIGHT + (curves ? LANES.curves.height : 0);
   return (
     <div class="timeline-body">
+      <TimelineBar />
       <div class="timeline-surface" ref={box} style={{ height: `${height}px` }}>
         <canvas ref={canvas} class="timeline-canvas" style={{ height: `${LANES_HEIGHT}px` }} aria-hidden="true" />
         {curves && <CurveLane />}
+        <BeatLane />
+        <RangeLane />
         <KeyLane />
         <LoopHandles />
+        <TrimHandles />
         <Playhead />
       </div>
       <ScrollBar />

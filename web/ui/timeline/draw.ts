@@ -87,7 +87,8 @@ function drawLanes(brush: Brush, { width, view, duration }: Picture): void {
   brush.fillStyle = COLOURS.lane;
   brush.fillRect(start, LANES.wave.top, end - start, LANES.wave.height + LANES.onset.height);
   brush.fillStyle = COLOURS.line;
-  for (const lane of [LANES.wave, LANES.keys, LANES.range]) brush.fillRect(start, lane.top, end - start, 1);
+  for (const lane of [LANES.beats, LANES.wave, LANES.keys, LANES.ranges])
+    brush.fillRect(start, lane.top, end - start, 1);
 }
 
 function drawLoop(brush: Brush, { loop, view }: Picture): void {
@@ -105,7 +106,7 @@ function drawBeats(brush: Brush, { grid, view, width, duration }: Picture): void
     drawSeconds(brush, view, width, duration);
     return;
   }
-  const bottom = LANES.range.top;
+  const bottom = LANES.ranges.top;
   const beatWidth = (60 / grid.tempo) * view.pixelsPerSecond;
   if (beatWidth >= MIN_BEAT_PIXELS) {
     brush.fillStyle = COLOURS.beat;
@@ -209,7 +210,7 @@ function drawKeyStems(brush: Brush, { keys, view, width, selection }: Picture): 
 }
 
 function drawDanced(brush: Brush, { danced, stale, generating, view, width, duration }: Picture): void {
-  const { top, height } = LANES.range;
+  const { top, height } = LANES.ranges;
   const end = Math.min(width, timeToX(view, Math.min(danced, duration)));
   if (end <= 0) return;
   brush.fillStyle = stale && !generating ? COLOURS.motionDim : COLOURS.motion;

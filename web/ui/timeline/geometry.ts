@@ -3,18 +3,22 @@ import type { TimelineView } from '../../app/state';
 import { lowerBound } from '../../app/snapping';
 import type { KeyPose } from '../../core/types';
 
-/** Heights of the lanes, CSS pixels, top to bottom. */
+/** The lanes, CSS pixels, top to bottom. */
 export const LANES = {
+  /** Bar numbers, loop and trim. */
   ruler: { top: 0, height: 24 },
-  wave: { top: 24, height: 60 },
-  onset: { top: 84, height: 20 },
-  keys: { top: 104, height: 72 },
-  range: { top: 176, height: 8 },
+  /** Beats and downbeats, to be dragged. */
+  beats: { top: 24, height: 14 },
+  wave: { top: 38, height: 44 },
+  onset: { top: 82, height: 14 },
+  keys: { top: 96, height: 72 },
+  /** What is danced, and the takes of ranges. */
+  ranges: { top: 168, height: 20 },
   /** Kinetic velocity against the music; shown on demand. */
-  curves: { top: 184, height: 96 },
+  curves: { top: 188, height: 96 },
 } as const;
 /** Height of the lanes that are always shown. */
-export const LANES_HEIGHT = 184;
+export const LANES_HEIGHT = 188;
 /** Width of a key pose's thumbnail. */
 export const KEY_WIDTH = 52;
 /** Width of a key pose without room for a thumbnail. */

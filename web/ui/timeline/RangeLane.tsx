@@ -1,0 +1,4 @@
+/** Ranges that were made anew, as chips with their takes. */
+export function RangeLane() {
+  return null;
+}

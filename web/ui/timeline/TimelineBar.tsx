@@ -1,0 +1,14 @@
+import { BeatTools } from './BeatTools';
+import { RangeTools } from './RangeTools';
+import { SnapTools } from './SnapTools';
+
+/** One row of tools over the lanes: snapping, beats, the selected range, the selected key poses. */
+export function TimelineBar() {
+  return (
+    <div class="timeline-bar" role="toolbar" aria-label="Timeline tools">
+      <SnapTools />
+      <BeatTools />
+      <RangeTools />
+    </div>
+  );
+}
