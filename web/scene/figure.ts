@@ -3,6 +3,7 @@ import {
   BufferGeometry,
   DataTexture,
   FloatType,
+  type Material,
   Matrix4,
   RGBAFormat,
   Skeleton,
@@ -64,12 +65,14 @@ export class Figure {
   /**
    * @param asset shared by all figures
    * @param level of detail, 0 the finest
+   * @param material freed with the figure
    */
   constructor(
     private readonly asset: FigureAsset,
     private level = 0,
+    material: Material = createFigureMaterial(),
   ) {
-    this.mesh = new SkinnedMesh(ownRange(asset.geometry), createFigureMaterial());
+    this.mesh = new SkinnedMesh(ownRange(asset.geometry), material);
     this.draw(level);
     // A shadow needs no fingers: it is drawn with the coarsest triangles.
     this.mesh.onBeforeShadow = () => this.draw(asset.levels.length - 1);

@@ -3,11 +3,14 @@ import { NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three';
 import type { FramePose } from '../core/types';
 import { JOINT_COUNT } from '../core/skeleton';
 import { Figure } from './figure';
-import { loadFigure } from './figure-asset';
+import { loadFigure, type FigureAsset } from './figure-asset';
 import { createBackdrop, Floor } from './floor';
 import { FollowCamera } from './follow-camera';
 import { QualityGovernor } from './framing';
 import { Lights } from './lights';
+import { Onion, type Ghost } from './onion';
+import { Path, type PathPicture } from './path';
+import { BodyClicks } from './body-clicks';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
 import { REST_HEIGHT } from './rest';
@@ -15,6 +18,8 @@ import { REST_HEIGHT } from './rest';
 export type { JointHover } from './posing';
 export type { PoseListener, PosePhase } from './pose-edit';
 export { jointLabel } from './pose-edit';
+export type { Ghost } from './onion';
+export type { PathPicture } from './path';
 
 /** What the rest of the app does with the stage. Functions that take a listener return how to stop listening. */
 export interface Stage {
@@ -35,6 +40,12 @@ export interface Stage {
   onHover(listener: (hover: JointHover | null) => void): () => void;
   /** Turns the selected joint about one of its own axes; quick repeats make one change. */
   rotateSelected(axis: 'x' | 'y' | 'z', radians: number): void;
+  /** Shows neighbouring key poses as ghosts, at most one of a kind, or none. */
+  setGhosts(ghosts: readonly Ghost[] | null): void;
+  /** Shows the path of a joint, or none. The picture is copied. */
+  setPath(path: PathPicture | null): void;
+  /** Calls back when the dancing figure is clicked, with the joint of the limb that was hit. Not in pose mode. */
+  onBodyClick(listener: (joint: number) => void): () => void;
   /** Whether the camera goes with the dancer. */
   follow: boolean;
   /** Back to the opening view. */
@@ -65,6 +76,10 @@ class WebGLStage implements Stage {
   private readonly lights = new Lights(true);
   private readonly view: FollowCamera;
   private readonly posing: Posing;
+  private readonly onion = new Onion();
+  private readonly path = new Path();
+  private readonly bodyClicks: BodyClicks;
+  private ghosts: readonly Ghost[] | null = null;
   private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
   private readonly governor = new QualityGovernor(Math.min(devicePixelRatio || 1, 2));
   private readonly callbacks = new Set<(now: number) => void>();
@@ -72,6 +87,7 @@ class WebGLStage implements Stage {
   private readonly draws: number[] = [];
   private readonly last: { root: Float32Array; quaternions: Float32Array };
   private figure: Figure | null = null;
+  private asset: FigureAsset | null = null;
   private wantsFollow = true;
   private glow = 0;
   private dirty = true;
@@ -98,7 +114,8 @@ class WebGLStage implements Stage {
       changed: () => (this.dirty = true),
       orbit: (on) => (this.view.controls.enabled = on),
     });
-    this.scene.add(this.backdrop, this.floor.mesh, this.lights.group);
+    this.bodyClicks = new BodyClicks(this.canvas, this.view.camera, () => (this.mode === 'dance' ? this.figure : null));
+    this.scene.add(this.backdrop, this.floor.mesh, this.lights.group, this.onion.group, this.path.group);
     this.canvas.addEventListener('dblclick', () => this.mode === 'dance' && this.frameFigure());
     this.canvas.addEventListener('webglcontextrestored', () => (this.dirty = true));
     this.watch();
@@ -163,6 +180,21 @@ class WebGLStage implements Stage {
     this.posing.nudge(axis, radians);
   }
 
+  setGhosts(ghosts: readonly Ghost[] | null): void {
+    this.ghosts = ghosts;
+    if (this.asset) this.onion.set(this.asset, ghosts);
+    this.dirty = true;
+  }
+
+  setPath(path: PathPicture | null): void {
+    this.path.set(path);
+    this.dirty = true;
+  }
+
+  onBodyClick(listener: (joint: number) => void): () => void {
+    return this.bodyClicks.listen(listener);
+  }
+
   frameFigure(): void {
     this.view.frame();
     this.dirty = true;
@@ -186,6 +218,9 @@ class WebGLStage implements Stage {
     cancelAnimationFrame(this.request);
     for (const watcher of this.watchers) watcher.disconnect();
     this.posing.dispose();
+    this.onion.dispose();
+    this.path.dispose();
+    this.bodyClicks.dispose();
     this.view.dispose();
     this.figure?.dispose();
     this.floor.dispose();
@@ -205,7 +240,9 @@ class WebGLStage implements Stage {
     await this.renderer.compileAsync(this.scene, this.view.camera);
     if (this.disposed) return figure.dispose();
     this.figure = figure;
+    this.asset = asset;
     this.dirty = true;
+    this.setGhosts(this.ghosts);
     if (this.mode === 'dance') this.draw();
     else this.posing.refresh();
   }
@@ -234,6 +271,7 @@ class WebGLStage implements Stage {
     this.renderer.setPixelRatio(this.governor.ratio);
     this.renderer.setSize(width, height, false);
     this.posing.handles.ratio = this.governor.ratio;
+    this.path.resize(width, height, this.governor.ratio);
     this.view.resize(width, height);
     // Drawn at once: an emptied canvas must not flash.
     if (this.figure) this.render();
