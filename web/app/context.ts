@@ -6,7 +6,7 @@ import type { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import type { Backend } from '../workers/protocol';
 import type { Assets, Engine, Listener, Storage } from './ports';
-import type { State } from './state';
+import type { NoticeAction, State } from './state';
 
 /** The rooms around the app. */
 export interface Services {
@@ -28,7 +28,7 @@ export interface Context {
   sync(): void;
   /** One undoable change of the document. */
   change(label: string, edit: (document: ProjectDocument) => ProjectDocument): void;
-  notify(kind: 'error' | 'info', text: string): void;
+  notify(kind: 'error' | 'info', text: string, action?: NoticeAction): void;
   /** For screen readers. */
   announce(text: string): void;
   /** Features and beats of the whole song, waiting for the analysis where it still runs. */

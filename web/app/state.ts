@@ -4,6 +4,7 @@ import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
 import type { Dials, ProjectDocument, SongReference } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
+import type { Limb } from '../core/pose-tools';
 import type { TradeOffPoint } from '../core/report-curves';
 import type {
   BeatGrid,
@@ -82,6 +83,30 @@ export interface Notice {
   id: number;
   kind: 'error' | 'info';
   text: string;
+  /** What the visitor can do about it. */
+  action?: NoticeAction;
+}
+
+/** A button of a message; the message goes when it is pressed. */
+export interface NoticeAction {
+  label: string;
+  run(): void;
+}
+
+/** A copied pose, or a limb of one. */
+export interface PoseClip {
+  rotations: readonly number[];
+  /** The limb that was copied; null for the whole pose. */
+  limb: Limb | null;
+  name: string;
+}
+
+/** A blend that is being tried in the editor. */
+export interface PoseBlend {
+  /** Name of the other pose. */
+  name: string;
+  /** 0..1. */
+  amount: number;
 }
 
 /** The pose in the editor. */
@@ -176,6 +201,11 @@ export function createState() {
       pins: new Set(),
       balance: false,
     }),
+    /** What was copied in the pose editor last. */
+    poseClip: signal<PoseClip | null>(null),
+    poseBlend: signal<PoseBlend | null>(null),
+    /** A short word on what just happened to the pose, shown over the stage. */
+    poseWord: signal(''),
     /** What key poses snap to. */
     snap: signal<Snap>('beat'),
     /** The neighbouring key poses as ghosts beside the figure. */

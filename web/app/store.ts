@@ -20,6 +20,8 @@ import { createState } from './state';
 const AUTOSAVE_DELAY = 600;
 /** Info notices go by themselves, milliseconds; errors stay until dismissed. */
 const INFO_LIFETIME = 7000;
+/** One with a button stays long enough to be reached by keyboard. */
+const ACTION_LIFETIME = 20_000;
 
 /** Puts state and actions together. */
 export function createStore(services: Services, reporter: Reporter) {
@@ -45,13 +47,14 @@ export function createStore(services: Services, reporter: Reporter) {
       history.push(edit(history.present), label);
       context.sync();
     },
-    notify(kind, text) {
+    notify(kind, text, action) {
       const id = (notices += 1);
-      state.notices.value = [...state.notices.value.filter((notice) => notice.text !== text), { id, kind, text }];
+      const others = state.notices.value.filter((notice) => notice.text !== text);
+      state.notices.value = [...others, { id, kind, text, ...(action ? { action } : {}) }];
       if (kind === 'info') {
         setTimeout(
           () => (state.notices.value = state.notices.value.filter((notice) => notice.id !== id)),
-          INFO_LIFETIME,
+          action ? ACTION_LIFETIME : INFO_LIFETIME,
         );
       }
     },

@@ -173,7 +173,7 @@ function toVertical([x, y, z]: readonly number[]): number[] {
 /** Turns one ankle so that the sole is level; where the foot points stays, and the toes lie straight. */
 function levelFoot(rotations: number[], { ankle, toes }: (typeof SIDES)[number], clamp: ClampJoint): number[] {
   const turn = worldTurn(rotations, ankle);
-  const level = withWorldTurn(rotations, ankle, multiply(toVertical(rotateVector(turn, [0, 1, 0])), turn));
+  const level = withWorldTurn(rotations, ankle, multiply(toVertical(rotateVector<number[]>(turn, [0, 1, 0])), turn));
   level.fill(0, toes * 3, toes * 3 + 3);
   return withTurn(level, ankle, clamp(ankle, turnOf(level, ankle)));
 }

@@ -7,10 +7,22 @@ export function Notices() {
   return (
     <>
       <div class="notices" role="region" aria-label="Messages">
-        {store.state.notices.value.map(({ id, kind, text }) => (
+        {store.state.notices.value.map(({ id, kind, text, action }) => (
           <div key={id} class={`notice ${kind}`} role={kind === 'error' ? 'alert' : 'status'}>
             <Icon name={kind === 'error' ? 'warning' : 'info'} />
             <span>{text}</span>
+            {action && (
+              <button
+                type="button"
+                class="secondary"
+                onClick={() => {
+                  store.dismiss(id);
+                  action.run();
+                }}
+              >
+                {action.label}
+              </button>
+            )}
             <button type="button" class="tool" aria-label="Dismiss" onClick={() => store.dismiss(id)}>
               <Icon name="close" size={16} />
             </button>
