@@ -17,6 +17,7 @@ import './style-layout.css';
 import './style-timeline.css';
 import './style-panels.css';
 import './style-report.css';
+import './style-project.css';
 
 const asked = new URLSearchParams(location.search).get('backend');
 const forcedBackend: Backend | undefined = asked === 'wasm' || asked === 'webgpu' ? asked : undefined;
