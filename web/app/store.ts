@@ -20,8 +20,6 @@ import { createState } from './state';
 const AUTOSAVE_DELAY = 600;
 /** Info notices go by themselves, milliseconds; errors stay until dismissed. */
 const INFO_LIFETIME = 7000;
-/** Those with a button, milliseconds. */
-const ACTION_LIFETIME = 15_000;
 /** One with a button stays long enough to be reached by keyboard. */
 const ACTION_LIFETIME = 20_000;
 

@@ -14,18 +14,6 @@ export function Notices() {
             {action && (
               <button
                 type="button"
-                class="notice-action"
-                onClick={() => {
-                  store.dismiss(id);
-                  action.run();
-                }}
-              >
-                {action.label}
-              </button>
-            )}
-            {action && (
-              <button
-                type="button"
                 class="secondary"
                 onClick={() => {
                   store.dismiss(id);
