@@ -119,6 +119,7 @@ async function dance(job: Job, folder: string, clips: SeedClip[], run: RunWindow
       frames,
       keyPoses,
       seedClip: clips[job.seedClip],
+      otherClips: clips,
       ...(job.opening ? { opening: toMotion(floats(path(job.opening))) } : {}),
       options,
     };

@@ -83,7 +83,8 @@ async function makeDance(document: ProjectDocument, mono: Float32Array, sampleRa
   const { file } = json('models/manifest.json') as { file: string };
   ort.env.wasm.numThreads = 1;
   const session = await openSession(ort, 'wasm', readFileSync(folder(`models/${file}`)));
-  const seedClip = (json('library/seeds.json') as { clips: SeedClip[] }).clips.find((clip) => clip.id === SEED_CLIP);
+  const { clips } = json('library/seeds.json') as { clips: SeedClip[] };
+  const seedClip = clips.find((clip) => clip.id === SEED_CLIP);
   if (!seedClip) throw new Error(`There is no starting clip "${SEED_CLIP}".`);
   const { keyStrength, variation, seed } = document.dials;
   const motion = await generateMotion(
@@ -93,6 +94,7 @@ async function makeDance(document: ProjectDocument, mono: Float32Array, sampleRa
       frames: Math.ceil((mono.length / sampleRate) * spec.fps),
       keyPoses: document.keyPoses,
       seedClip,
+      otherClips: clips,
       options: { keyStrength, variation, seed, cleanFeet: true },
     },
     (inputs) => session.run(inputs),

@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { keysOnFrames } from '../../web/core/correction';
 import { FIRST_TAKE, fillerPoses, headingCurve, KEY_DISTANCE } from '../../web/core/filler';
 import { headingOf } from '../../web/core/localframe';
+import { angleBetween } from '../../web/core/rotation';
 import { key, poseWith, steadyGrid, stepClip } from './dance';
 
 const grid = steadyGrid(20);
@@ -64,6 +65,38 @@ describe('filler poses', () => {
     const fillers = plain(1);
     // The clip is four beats long, so the fifth filler repeats the first.
     expect(Array.from(fillers[4].quaternions)).toEqual(Array.from(fillers[0].quaternions, (v) => expect.closeTo(v, 5)));
+  });
+
+  it('borrow bars from other clips as variation grows, so that a long gap has many ways', () => {
+    const twist = (angle: number, id: string) => {
+      const clip = stepClip();
+      const poses = clip.poses.map((pose) => pose.map((v, i) => (i % 3 === 1 && i > 2 ? v + angle : v)));
+      return { ...clip, id, poses };
+    };
+    const others = [twist(0.2, 'a'), twist(-0.2, 'b'), twist(0.4, 'c')];
+    /** Mean angle between the ways of eight seeds, radians. */
+    const apart = (list: typeof others) => {
+      const ways = Array.from({ length: 8 }, (_, seed) =>
+        fillerPoses({ ...request, others: list, variation: 1, seed }, () => 0)
+          .filter(({ frame }) => frame > 5.3 * 30 && frame < 12.3 * 30)
+          .map(({ quaternions }) => quaternions),
+      );
+      const angles = ways.flatMap((way, i) =>
+        ways.slice(0, i).flatMap((other) =>
+          way.map((pose, k) => {
+            let sum = 0;
+            for (let j = 4; j < pose.length; j += 4) {
+              sum += angleBetween(pose.subarray(j, j + 4), other[k].subarray(j, j + 4));
+            }
+            return sum / (pose.length / 4 - 1);
+          }),
+        ),
+      );
+      return angles.reduce((sum, angle) => sum + angle, 0) / angles.length;
+    };
+    expect(apart(others)).toBeGreaterThan(1.5 * apart([]));
+    const plain = { ...request, variation: 0 };
+    expect(fillerPoses({ ...plain, others }, () => 0)).toEqual(fillerPoses(plain, () => 0));
   });
 
   it('of a part of the song are those of the whole', () => {

@@ -31,8 +31,20 @@ export const KEY_DISTANCE = 0.4;
 /** A body turns at most this fast between two keys' headings, radians a second. */
 const TURN_SPEED = 2.5;
 
-/** How to dance one bar of the clip. */
+/** Steps at which a bar may begin in a clip, beats: phrases begin on ones and threes. */
+const ENTRY = 2;
+/** At full variation this share of the bars that leave the clip's own order comes from other clips. */
+const BORROWED = 0.7;
+
+/** A clip to take bars from. */
+interface Source {
+  sampler: SeedSampler;
+  mean: Float32Array;
+}
+
+/** How to dance one bar. */
 interface BarStyle {
+  source: Source;
   /** Clip beat of the bar's first beat. */
   phase: number;
   mirrored: boolean;
@@ -43,13 +55,15 @@ interface BarStyle {
 /** What fillers are chosen for. */
 export interface FillerRequest {
   clip: SeedClip;
+  /** Clips that bars are borrowed from as variation grows; without them all is made of `clip`. */
+  others?: readonly SeedClip[];
   grid: BeatGrid;
   /** The user's keys on their frames, ascending. */
   keys: readonly FrameKey[];
   /** Frames [from, to) are filled. */
   from: number;
   to: number;
-  /** 0 = the clip in its own order .. 1 = bars shuffled, mirrored, larger and smaller. */
+  /** 0 = the clip in its own order .. 1 = bars shuffled, mirrored, larger and smaller, and borrowed. */
   variation: number;
   seed: number;
 }
@@ -164,10 +178,11 @@ function detourPose(
   return { frame, quaternions: pose };
 }
 
-/** Poses of the clip by song beat, bar by bar in a style drawn for each bar. */
+/** Poses by song beat, bar by bar in a style drawn for each bar. */
 function barDancer(request: FillerRequest, phase: BeatPhase): (beat: number, heading: number) => Float32Array {
-  const sampler = seedSampler(request.clip);
-  const mean = meanPose(request.clip);
+  const { clip, others = [] } = request;
+  const own = sourceOf(clip);
+  const borrowed = others.filter((other) => other.id !== clip.id).map(sourceOf);
   const variation = Math.min(1, Math.max(0, request.variation));
   const styles: BarStyle[] = [];
   const firstBar = Math.floor(phase.at(0) / phase.perBar);
@@ -175,46 +190,55 @@ function barDancer(request: FillerRequest, phase: BeatPhase): (beat: number, hea
   const style = (bar: number): BarStyle => {
     for (let next = firstBar + styles.length; next <= bar; next++) {
       const random = seededRandom(request.seed * 7919 + next);
-      styles.push(drawStyle(sampler, phase.perBar, next, variation, random, styles[styles.length - 1]));
+      const before = styles[styles.length - 1] as BarStyle | undefined;
+      const straight: BarStyle = {
+        source: before?.source ?? own,
+        phase: before ? before.phase + phase.perBar : next * phase.perBar,
+        mirrored: before?.mirrored ?? false,
+        amplitude: 1,
+      };
+      styles.push(drawStyle({ straight, own, borrowed, variation, random }));
     }
     return styles[Math.max(0, bar - firstBar)];
   };
-  const clipHeading = headingOf(mean);
   return (beat, heading) => {
     const bar = Math.floor(beat / phase.perBar);
-    return styledPose(sampler, mean, style(bar), beat - bar * phase.perBar, heading - clipHeading);
+    const chosen = style(bar);
+    return styledPose(chosen, beat - bar * phase.perBar, heading - headingOf(chosen.source.mean));
   };
+}
+
+function sourceOf(clip: SeedClip): Source {
+  return { sampler: seedSampler(clip), mean: meanPose(clip) };
 }
 
 /** The style of a bar: straight on with probability 1 - variation, else one whose first pose is near where the bar before leads. */
-function drawStyle(
-  sampler: SeedSampler,
-  perBar: number,
-  bar: number,
-  variation: number,
-  random: Random,
-  before: BarStyle | undefined,
-): BarStyle {
-  const straight: BarStyle = {
-    phase: before ? before.phase + perBar : bar * perBar,
-    mirrored: before?.mirrored ?? false,
-    amplitude: 1,
-  };
+function drawStyle(draw: {
+  /** The bar before, going on. */
+  straight: BarStyle;
+  own: Source;
+  borrowed: readonly Source[];
+  variation: number;
+  random: Random;
+}): BarStyle {
+  const { straight, own, borrowed, variation, random } = draw;
   const amplitude = 1 + variation * (random() - 0.4) * 0.5;
   if (random() >= variation) return { ...straight, amplitude };
-  const options: BarStyle[] = [];
-  for (let first = 0; first < sampler.beats; first += perBar) {
-    for (const mirrored of [false, true]) options.push({ phase: first, mirrored, amplitude });
-  }
-  const leads = rawPose(sampler, straight, 0);
-  const weights = options.map((option) => Math.exp(-poseDistance(leads, rawPose(sampler, option, 0)) / 0.35));
+  const sources = borrowed.length && random() < BORROWED * variation ? borrowed : [own];
+  const options = sources.flatMap((source) =>
+    Array.from({ length: Math.ceil(source.sampler.beats / ENTRY) }, (_, i) => i * ENTRY).flatMap((phase) =>
+      [false, true].map((mirrored): BarStyle => ({ source, phase, mirrored, amplitude })),
+    ),
+  );
+  const leads = rawPose(straight, 0);
+  const weights = options.map((option) => Math.exp(-poseDistance(leads, rawPose(option, 0)) / 0.35));
   return options[chooseWeighted(weights, random)];
 }
 
-function rawPose(sampler: SeedSampler, style: BarStyle, beat: number): Float32Array {
+function rawPose({ source, phase, mirrored }: BarStyle, beat: number): Float32Array {
   const pose = new Float32Array(JOINT_COUNT * 4);
-  sampler.sample(style.phase + beat, pose, new Float32Array(3));
-  return style.mirrored ? poseToQuaternions(mirrorPose(quaternionsToPose(pose))) : pose;
+  source.sampler.sample(phase + beat, pose, new Float32Array(3));
+  return mirrored ? poseToQuaternions(mirrorPose(quaternionsToPose(pose))) : pose;
 }
 
 /** Mean angle between two poses' joints, radians. */
@@ -224,14 +248,9 @@ function poseDistance(a: Float32Array, b: Float32Array): number {
   return sum / JOINT_COUNT;
 }
 
-function styledPose(
-  sampler: SeedSampler,
-  mean: Float32Array,
-  style: BarStyle,
-  beat: number,
-  turn: number,
-): Float32Array {
-  const pose = rawPose(sampler, style, beat);
+function styledPose(style: BarStyle, beat: number, turn: number): Float32Array {
+  const { mean } = style.source;
+  const pose = rawPose(style, beat);
   const middle = style.mirrored ? poseToQuaternions(mirrorPose(quaternionsToPose(mean))) : mean;
   for (let i = 4; i < pose.length; i += 4) {
     const from = middle.subarray(i, i + 4);

@@ -32,6 +32,8 @@ export interface GenerationRequest {
   frames: number;
   keyPoses: readonly KeyPose[];
   seedClip: SeedClip;
+  /** Clips that fillers are borrowed from as variation grows. */
+  otherClips?: readonly SeedClip[];
   /** The spec's seedFrames of dance just before frame 0, in the world, instead of the starting clip: a real dance goes on from there. */
   opening?: Motion;
   options: {
@@ -108,11 +110,11 @@ function networkKeys(
   to: number,
   start?: { frame: number; heading: number },
 ): FrameKey[] {
-  const { seedClip: clip, grid, options } = request;
+  const { seedClip: clip, otherClips: others, grid, options } = request;
   if (options.fillers === false) return keys;
   const heading = headingCurve(keys, start);
   const fillers = fillerPoses(
-    { clip, grid, keys, from, to, variation: options.variation, seed: options.seed },
+    { clip, others, grid, keys, from, to, variation: options.variation, seed: options.seed },
     heading,
   );
   return [...keys, ...fillers].sort((a, b) => a.frame - b.frame);

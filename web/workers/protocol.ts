@@ -40,6 +40,8 @@ export interface DanceRequest {
   frames: number;
   keyPoses: KeyPose[];
   seedClip: SeedClip;
+  /** Clips that poses are borrowed from as variation grows. */
+  otherClips?: SeedClip[];
   options: GenerateOptions;
   /** Frames [from, to) are made anew; the rest stays as in `previous`. */
   range?: { from: number; to: number };

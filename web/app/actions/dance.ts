@@ -122,6 +122,7 @@ export function danceActions(context: Context, reporter: Reporter) {
           frames: state.frames.value,
           keyPoses: [...inputs.keyPoses],
           seedClip,
+          otherClips: state.seeds.value,
           options: { keyStrength, variation, seed, cleanFeet: true },
           ...(range ? { range, previous: danceSoFar(), previousUncorrected: state.dance.value?.uncorrected } : {}),
         },

@@ -59,6 +59,7 @@ export function pictureActions(context: Context, dances: DanceActions) {
           {
             ...excerpt(whole, from, Math.min(state.frames.value, last + TAIL * fps)),
             seedClip,
+            otherClips: state.seeds.value,
             options: { keyStrength, variation, seed, cleanFeet: true },
           },
           (_, fraction) => onProgress(fraction),
