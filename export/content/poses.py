@@ -11,7 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from rig import Arm, Body, Foot, Solved, mirrored, settle, solve
+from poses_more import ballet, ballroom, basics, floor_and_air, krump_and_pop, vogue
+from rig import Arm, Body, Foot, Solved, forward, mirrored, rz, settle, solve
 
 OUT = Path(__file__).resolve().parents[2] / "public/library/poses.json"
 
@@ -27,6 +28,8 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
 
     def add(name: str, group: str, body: Body, weight: float | None) -> None:
         p.append((name.lower().replace(" ", "-").replace("'", ""), name, group, body, weight))
+
+    basics(add)
 
     # -- Groove: relaxed, one hip out, the whole body rides the beat
     add("Hip lean", "Groove", Body(
@@ -182,8 +185,8 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
         h=0.33, tilt=-20, roll=14, bend=6, side=-34, twist=-16, turn=8, look=20, look_up=10, head_tilt=6,
         la=Arm((0.28, 0.42, 0.14), elbow=(1, -0.2, -0.2), flex=-10), ra=Arm(world=(-0.36, 0.075, -0.3), elbow=(0.7, 0.1, -0.8), flex=-70)), None)
     add("Low spread", "Street", Body(
-        left=Foot(0.24, 0.1, 34, heel=26), right=Foot(-0.6, 0.02, -34, heel=0),
-        h=0.42, x=0.1, tilt=44, bend=34, roll=-4, side=6, twist=-26, turn=0, look=-14, look_up=4,
+        left=Foot(0.26, 0.1, 40, heel=30), right=Foot(-0.58, 0.04, -34, roll=-16),
+        h=0.46, x=0.1, tilt=44, bend=34, roll=-4, side=6, twist=-26, turn=0, look=-14, look_up=4,
         la=Arm(world=(0.2, 0.08, 0.52), elbow=(0.9, 0.2, -0.4), flex=-60), ra=Arm((0.46, 0.14, -0.16), elbow=SIDE_ELBOW, flex=-10)), None)
 
     # -- Jumps
@@ -217,12 +220,27 @@ def pose_list() -> list[tuple[str, str, str, Body, float | None]]:
         left=Foot(0.26, 0.1, 38, heel=0), right=Foot(-0.08, -0.06, -24),
         h=0.89, roll=-9, side=-14, turn=30, twist=-24, bend=-8, look=-26, look_up=4, head_tilt=-8,
         la=Arm((0.42, -0.2, 0.2), elbow=(0.3, -0.2, -1), roll=60, flex=-20), ra=Arm((-0.18, -0.06, 0.25), elbow=(1, -0.4, 0.1), flex=25)), 0.16)
-    return p
+    for more in (krump_and_pop, vogue, ballroom, ballet, floor_and_air):
+        more(add)
+    # a group keeps together, wherever its poses were described
+    order = list(dict.fromkeys(group for _, _, group, _, _ in p))
+    return sorted(p, key=lambda pose: order.index(pose[2]))
+
+
+def reference_poses() -> list[tuple[str, str, str, Solved]]:
+    """The two stances that rigs are drawn in, exactly symmetrical: arms level, and arms 45 degrees down."""
+    out = []
+    for ident, name, down in (("t-pose", "T-pose", 0), ("a-pose", "A-pose", 45)):
+        local = np.tile(np.eye(3), (24, 1, 1))
+        local[16], local[17] = rz(-down), rz(down)
+        points, world = forward(local, np.array([0, 0.955, 0]))
+        out.append((ident, name, "Basics", Solved(local, points[0], points, world, [])))
+    return out
 
 
 def solved_poses() -> list[tuple[str, str, str, Solved]]:
     """All poses, balanced and solved."""
-    out = []
+    out = reference_poses()
     for ident, name, group, body, weight in pose_list():
         # a little free peel of the back heel keeps legs straight without floating
         out.append((ident, name, group, solve(settle(body, weight, peel=6), peel=6)))
