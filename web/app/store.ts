@@ -5,6 +5,7 @@ import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import { danceActions } from './actions/dance';
 import { keyActions } from './actions/keys';
+import { overlayActions } from './actions/overlays';
 import { playbackActions } from './actions/playback';
 import { poseActions } from './actions/pose';
 import { pictureActions } from './actions/picture';
@@ -13,6 +14,7 @@ import { songActions } from './actions/song';
 import { viewActions } from './actions/view';
 import type { Context, Services } from './context';
 import { tuningActions } from './actions/tuning';
+import { poseMath } from './pose-math';
 import type { Reporter } from './report-client';
 import { createState } from './state';
 
@@ -67,7 +69,7 @@ export function createStore(services: Services, reporter: Reporter) {
   const keys = keyActions(context);
   const view = viewActions(context);
   const playback = playbackActions(context, view.revealTime);
-  const pose = poseActions(context, keys);
+  const pose = poseActions(context, keys, poseMath);
   const songs = songActions(context, dance);
   const project = projectActions(context, songs, dance);
 
@@ -153,6 +155,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...songs,
     ...project,
     ...view,
+    ...overlayActions(context),
     undo,
     redo,
     whenReady,

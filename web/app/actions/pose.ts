@@ -1,65 +1,55 @@
-/** The pose editor's draft: its own undo, apart from the document's. */
-import { History } from '../../core/history';
+/** The pose editor: opening, keeping and leaving a pose; its tools are in the files beside this one. */
+import { POSE_SIZE } from '../../core/document';
 import { framePose } from '../../core/motion';
 import { quaternionsToPose } from '../../core/rotation';
-import { mirrorPose } from '../../core/skeleton';
-import { POSE_SIZE } from '../../core/document';
+import type { PoseTools } from '../../core/types';
+import { jointLabel } from '../../scene/pose-edit';
 import type { Context } from '../context';
-import { eulerToAxisAngle } from '../euler';
+import { poseBlendActions } from './pose-blend';
+import { poseClipboardActions } from './pose-clipboard';
+import { poseDesk } from './pose-draft';
+import { poseShapeActions } from './pose-shape';
+import type { PoseMath } from './pose-limits';
 
 /** Actions on the pose in the editor. */
-export function poseActions(
-  context: Context,
-  keys: { addKey: AddKey; updateKey(id: string, rotations: number[]): void },
-) {
+export function poseActions(context: Context, keys: Keys, math: PoseMath) {
   const { state, services } = context;
-  let history = new History<number[]>([]);
-  let before: readonly number[] = [];
+  const desk = poseDesk(context);
 
-  const refresh = () => {
-    const draft = state.draft.value;
-    if (!draft) return;
-    state.draft.value = {
-      ...draft,
-      rotations: history.present,
-      canUndo: history.undoLabel !== null,
-      canRedo: history.redoLabel !== null,
-    };
-  };
-  const push = (rotations: number[], label: string) => {
-    history.push(rotations, label);
-    refresh();
+  const setPoseTools = (change: Partial<PoseTools>, word: string): void => {
+    state.poseTools.value = { ...state.poseTools.value, ...change };
+    desk.say(word);
   };
 
   const begin = (rotations: readonly number[], options: { keyId?: string; name?: string } = {}) => {
     services.player.pause();
-    history = new History([...rotations]);
-    state.draft.value = {
-      rotations: history.present,
-      keyId: options.keyId ?? null,
-      name: options.name ?? '',
-      joint: null,
-      canUndo: false,
-      canRedo: false,
-    };
-    state.panel.value = 'poses';
+    desk.open(rotations, options);
   };
 
   /** The pose of the dance at the playhead; null without a dance. */
   const poseNow = (): number[] | null => {
     const motion = state.dance.value?.motion;
-    if (!motion) return null;
+    if (!motion || motion.frames === 0) return null;
     return quaternionsToPose(framePose(motion, services.player.time()).quaternions);
   };
+  const noDance = () => context.notify('info', 'There is no dance to take a pose from yet: generate one first.');
 
   return {
-    /** Opens the editor with a pose, by default standing upright. */
+    ...poseShapeActions(context, desk, math),
+    ...poseClipboardActions(context, desk, math),
+    ...poseBlendActions(context, desk, math),
+
+    /** Opens the editor with a pose. */
     editPose: begin,
 
     /** Opens the editor with the pose of a key pose, at its time. */
     editKey(id: string): void {
       const key = state.document.value.keyPoses.find((each) => each.id === id);
       if (!key) return;
+      if (key.locked) {
+        context.notify('info', 'This key pose is locked: unlock it to change it.');
+        return;
+      }
       begin(key.rotations, { keyId: id, name: key.name });
       services.player.seek(key.time);
     },
@@ -68,7 +58,14 @@ export function poseActions(
     poseFromDance(): void {
       const pose = poseNow();
       if (pose) begin(pose, { name: 'From the dance' });
-      else context.notify('info', 'There is no dance to take a pose from yet: generate one first.');
+      else noDance();
+    },
+
+    /** Gives the pose in the editor the shape that the dance has at the playhead. */
+    takePoseOfDance(): void {
+      const pose = poseNow();
+      if (pose) desk.push(pose, 'Take the pose of the dance');
+      else noDance();
     },
 
     /** Puts the dance's pose at the playhead on the timeline. */
@@ -77,72 +74,90 @@ export function poseActions(
       if (pose) keys.addKey(pose, services.player.time(), { name: 'From the dance', exact: true });
     },
 
-    /** A gizmo drag: many changes, one step. */
+    /** A drag of the gizmo: many changes, one step. */
     changePose(rotations: readonly number[], phase: 'start' | 'change' | 'commit' | 'cancel'): void {
       if (!state.draft.value || rotations.length !== POSE_SIZE) return;
-      if (phase === 'start') {
-        before = history.present;
-        history.capture();
-      } else if (phase === 'cancel') history.discard();
-      else {
-        if (!history.capturing) {
-          before = history.present;
-          history.capture();
-        }
-        history.preview([...rotations]);
-        // A click on a ring turns nothing and must be no step.
-        const turned = rotations.some((value, i) => Math.abs(value - before[i]) > 1e-6);
-        if (phase === 'commit' && turned) history.commit('Rotate joint');
-        else if (phase === 'commit') history.discard();
-      }
-      refresh();
-    },
-
-    /** Sets one joint by x, y, z degrees. */
-    setJointDegrees(joint: number, degrees: readonly [number, number, number]): void {
-      const next = [...history.present];
-      const turn = eulerToAxisAngle(degrees);
-      for (let axis = 0; axis < 3; axis += 1) next[joint * 3 + axis] = turn[axis];
-      push(next, 'Rotate joint');
+      const label = state.poseTools.value.mode === 'move' ? 'Move joint' : 'Rotate joint';
+      if (phase === 'start') desk.settle();
+      else if (phase === 'cancel') desk.discard();
+      else desk.attempt([...rotations], label);
+      if (phase === 'commit') desk.settle();
     },
 
     selectJoint(joint: number | null): void {
       const draft = state.draft.value;
-      if (draft && draft.joint !== joint) state.draft.value = { ...draft, joint };
+      if (!draft || draft.joint === joint) return;
+      state.draft.value = { ...draft, joint };
+      state.poseWord.value = '';
     },
 
-    mirrorDraft: () => push(mirrorPose(history.present), 'Mirror pose'),
+    /** Dragging a joint turns it, or moves it with the body following. */
+    setPoseMode: (mode: PoseTools['mode']) => setPoseTools({ mode }, mode === 'move' ? 'Move joints.' : 'Turn joints.'),
 
-    resetJoint(joint: number): void {
-      const next = [...history.present];
-      next.fill(0, joint * 3, joint * 3 + 3);
-      push(next, 'Reset joint');
+    /** Turns and moves go along the joint's own axes or the world's. */
+    toggleSpace(): void {
+      const space = state.poseTools.value.space === 'local' ? 'world' : 'local';
+      setPoseTools({ space }, space === 'world' ? 'World axes.' : 'The joint’s own axes.');
     },
 
-    undoPose(): void {
-      history.undo();
-      refresh();
+    toggleLimits(): void {
+      const limits = !state.poseTools.value.limits;
+      setPoseTools({ limits }, limits ? 'Joint limits on.' : 'Joint limits off: anything goes.');
     },
 
-    redoPose(): void {
-      history.redo();
-      refresh();
+    toggleMirrorEdit(): void {
+      const mirror = !state.poseTools.value.mirror;
+      setPoseTools({ mirror }, mirror ? 'Both sides move, mirrored.' : 'Each side moves alone.');
     },
+
+    toggleBalance(): void {
+      const balance = !state.poseTools.value.balance;
+      setPoseTools({ balance }, balance ? 'Balance shown.' : 'Balance hidden.');
+    },
+
+    /** Pins the chosen joint where it is, or lets it go. */
+    togglePin(joint: number | null = state.draft.value?.joint ?? null): void {
+      if (!state.draft.value) return;
+      if (joint === null) {
+        desk.say('Choose a joint to pin first.');
+        return;
+      }
+      const pins = new Set(state.poseTools.value.pins);
+      const gone = pins.delete(joint);
+      if (!gone) pins.add(joint);
+      setPoseTools({ pins }, gone ? `${jointLabel(joint)} is free.` : `${jointLabel(joint)} stays where it is.`);
+    },
+
+    undoPose: desk.undo,
+    redoPose: desk.redo,
 
     /** Writes the draft to its key pose, or adds it at the playhead's nearest beat, and closes the editor. */
     keepDraft(): void {
+      desk.settle();
       const draft = state.draft.value;
       if (!draft) return;
-      const exists = state.document.value.keyPoses.some((key) => key.id === draft.keyId);
-      if (draft.keyId && exists) keys.updateKey(draft.keyId, draft.rotations);
-      else keys.addKey(draft.rotations, services.player.time(), { name: draft.name || 'My pose' });
-      state.draft.value = null;
+      const own = state.document.value.keyPoses.find((key) => key.id === draft.keyId);
+      if (own?.locked) {
+        context.notify('info', 'This key pose is locked: unlock it to change it.');
+        return;
+      }
+      if (own) {
+        keys.updateKey(own.id, draft.rotations);
+        desk.keep(own.id);
+      } else if (state.duration.value === 0) {
+        context.notify('info', 'Drop a song first: poses are placed on its beats.');
+      } else {
+        desk.keep(keys.addKey(draft.rotations, services.player.time(), { name: draft.name || 'My pose' }));
+      }
     },
 
-    closeDraft(): void {
-      state.draft.value = null;
-    },
+    /** Leaves the editor; what was changed in it can be brought back. */
+    closeDraft: desk.drop,
   };
 }
 
-type AddKey = (rotations: readonly number[], time: number, options?: { name?: string; exact?: boolean }) => string;
+/** What the editor needs of the timeline. */
+interface Keys {
+  addKey(rotations: readonly number[], time: number, options?: { name?: string; exact?: boolean }): string;
+  updateKey(id: string, rotations: readonly number[]): void;
+}
