@@ -14,24 +14,7 @@ import {
   Vector2,
 } from 'three';
 import { ACCENT } from './handles';
-
-/** Most frames of a path that are drawn. */
-export const PATH_CAPACITY = 256;
-
-/** What lies on a frame of a path. */
-export const PATH_MARK = { none: 0, tick: 1, beat: 2, key: 3 } as const;
-
-/** A joint's way through time, a point a frame. The arrays may be written again after they were handed over. */
-export interface PathPicture {
-  /** x, y, z of each frame, metres. */
-  points: Float32Array;
-  /** One {@link PATH_MARK} a frame. */
-  marks: Uint8Array;
-  /** Frames in use. */
-  count: number;
-  /** The playhead, in frames from the first; need not be whole. */
-  now: number;
-}
+import { PATH_CAPACITY, PATH_MARK, type PathPicture } from './path-picture';
 
 /** The colour of motion all over the app. */
 const MOTION = '#a78bfa';

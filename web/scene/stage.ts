@@ -9,7 +9,8 @@ import { FollowCamera } from './follow-camera';
 import { QualityGovernor } from './framing';
 import { Lights } from './lights';
 import { Onion, type Ghost } from './onion';
-import { Path, type PathPicture } from './path';
+import { Path } from './path';
+import type { PathPicture } from './path-picture';
 import { BodyClicks } from './body-clicks';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
@@ -19,7 +20,7 @@ export type { JointHover } from './posing';
 export type { PoseListener, PosePhase } from './pose-edit';
 export { jointLabel } from './pose-edit';
 export type { Ghost } from './onion';
-export type { PathPicture } from './path';
+export type { PathPicture } from './path-picture';
 
 /** What the rest of the app does with the stage. Functions that take a listener return how to stop listening. */
 export interface Stage {

@@ -8,11 +8,13 @@ import flip from 'lucide-static/icons/flip-horizontal-2.svg?raw';
 import follow from 'lucide-static/icons/video.svg?raw';
 import frame from 'lucide-static/icons/scan.svg?raw';
 import folder from 'lucide-static/icons/folder-open.svg?raw';
+import ghosts from 'lucide-static/icons/ghost.svg?raw';
 import help from 'lucide-static/icons/circle-question-mark.svg?raw';
 import imageDown from 'lucide-static/icons/image-down.svg?raw';
 import info from 'lucide-static/icons/info.svg?raw';
 import maximize from 'lucide-static/icons/move-horizontal.svg?raw';
 import music from 'lucide-static/icons/music.svg?raw';
+import path from 'lucide-static/icons/spline.svg?raw';
 import pause from 'lucide-static/icons/pause.svg?raw';
 import pencil from 'lucide-static/icons/pencil.svg?raw';
 import person from 'lucide-static/icons/person-standing.svg?raw';
@@ -48,11 +50,13 @@ const ICONS = {
   folder,
   follow,
   frame,
+  ghosts,
   help,
   imageDown,
   info,
   maximize,
   music,
+  path,
   pause,
   pencil,
   person,

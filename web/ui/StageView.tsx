@@ -8,6 +8,9 @@ import { Icon } from './Icon';
 import { chooseFile } from './files';
 import { PoseBar } from './PoseBar';
 import { tip } from './shortcuts';
+import { motionAt } from './stage/motion-at';
+import { bindOverlays } from './stage/overlays';
+import { OverlayTools } from './stage/OverlayTools';
 import { useStore } from './store-context';
 
 /** The stage and what lies over it. */
@@ -35,7 +38,10 @@ export function StageView() {
       {draft.value ? <PoseBar /> : (!song.value || song.value.demo) && <Welcome />}
       <SoundChip />
       <WorkChip />
-      <CameraTools />
+      <div class="stage-tools">
+        <OverlayTools />
+        <CameraTools />
+      </div>
     </main>
   );
 }
@@ -165,7 +171,7 @@ async function startStage(container: HTMLElement, store: Store): Promise<() => v
   const onFrame = () => {
     const time = store.tick();
     store.followTime(time);
-    const motion = motionAt(store, time);
+    const motion = motionAt(state, time);
     // A dance that stands still is not drawn again: the graphics card may rest.
     if (stage && motion && (motion !== shownMotion || time !== shownTime)) {
       stage.show(framePose(motion, time, pose));
@@ -215,19 +221,12 @@ async function startStage(container: HTMLElement, store: Store): Promise<() => v
       }
       opened.selectJoint(draft.joint);
     }),
+    bindOverlays(opened, store),
   );
   return () => {
     for (const stop of undo) stop();
     opened.dispose();
   };
-}
-
-/** The new dance as far as it is made, the former one beyond. */
-function motionAt(store: Store, time: number) {
-  const partial = store.state.partial.value;
-  if (partial && time * partial.fps < partial.frames) return partial;
-  const dance = store.state.dance.value;
-  return dance && dance.motion.frames > 0 ? dance.motion : null;
 }
 
 function beatIndex(store: Store, time: number): number {

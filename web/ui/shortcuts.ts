@@ -83,6 +83,20 @@ export const SHORTCUTS: readonly Shortcut[] = [
     run: (store) => store.toggleCurves(),
   },
   { id: 'frame', keys: ['F'], label: 'Show the whole figure', group: 'View', run: (store) => store.frameFigure() },
+  {
+    id: 'ghosts',
+    keys: ['O'],
+    label: 'Show the neighbouring key poses as ghosts',
+    group: 'View',
+    run: (store) => store.toggleOnion(),
+  },
+  {
+    id: 'path',
+    keys: ['Shift+P'],
+    label: 'Show the path of a joint through time',
+    group: 'View',
+    run: (store) => store.togglePath(),
+  },
   { id: 'help', keys: ['?'], label: 'Show the keys', group: 'View', run: (store) => store.toggleHelp() },
   {
     id: 'escape',
