@@ -85,6 +85,15 @@ describe('parseDocument', () => {
   });
 });
 
+describe('a key pose', () => {
+  it('with a damaged name, lock or strength keeps its pose', () => {
+    const damaged = { id: 'k1', time: 1, rotations: pose(), name: 5, locked: false, strength: 3 };
+    const { document, repairs } = parseDocument({ ...createDocument(song), keyPoses: [damaged] });
+    expect(document.keyPoses).toEqual([{ id: 'k1', time: 1, rotations: pose() }]);
+    expect(repairs).toEqual(['The name, lock or strength of 1 key pose was damaged and left out.']);
+  });
+});
+
 describe('nextKeyId', () => {
   it('is the first free number', () => {
     expect(nextKeyId([])).toBe('k1');
@@ -128,6 +137,15 @@ describe('ranges, trim and camera', () => {
     ['a trim the wrong way round', { trim: { start: 3, end: 2 } }, /whole song/],
     ['a range whose take is missing', { ranges: [{ ...range, chosen: 't9' }] }, /ranges/],
     ['two ranges of one name', { ranges: [range, range] }, /ranges/],
+    ['two takes of one name', { ranges: [{ ...range, takes: [...range.takes, ...range.takes] }] }, /ranges/],
+    ['beats at no time', { grid: { tempo: 120, beatsPerBar: 4, beats: [], downbeats: [] } }, /song’s own beats/],
+    [
+      'beats on top of each other',
+      { grid: { tempo: 120, beatsPerBar: 4, beats: [1, 1.0001], downbeats: [] } },
+      /own beats/,
+    ],
+    ['a bar between beats', { grid: { tempo: 120, beatsPerBar: 4, beats: [1, 2], downbeats: [1, 1.5] } }, /bars/],
+    ['a figure that is no name', { avatar: 7 }, /figure/],
     ['a camera at no place', { camera: { follows: true, position: [NaN, 0, 0], target: [0, 0, 0] } }, /camera/],
   ])('repair %s with a word', (_name, damage, message) => {
     const { repairs } = parseDocument({ ...createDocument(song), ...damage });

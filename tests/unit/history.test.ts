@@ -83,4 +83,17 @@ describe('History', () => {
     expect(history.present).toEqual({ pose: 0, camera: 'far' });
     expect(history.undo()).toBe(false);
   });
+
+  it('amends inside a drag that has not moved yet without making it a step', () => {
+    const history = new History({ pose: 0, camera: 'near' });
+    history.capture();
+    history.amend((state) => ({ ...state, camera: 'far' }));
+    history.commit('Drag');
+    expect(history.undoLabel).toBeNull();
+    history.capture();
+    history.preview({ ...history.present, pose: 1 });
+    history.amend((state) => ({ ...state, camera: 'left' }));
+    history.discard();
+    expect(history.present).toEqual({ pose: 0, camera: 'left' });
+  });
 });

@@ -23,6 +23,9 @@ import {
 } from './document-schema';
 import type { BeatGrid, KeyPose } from './types';
 
+/** Beats closer than this, seconds, are no beats of a person: some 6000 a minute. */
+const MIN_BEAT = 0.01;
+
 /**
  * Reads a document from outside, repairing what can be repaired.
  *
@@ -55,11 +58,18 @@ export function parseDocument(input: unknown): { document: ProjectDocument; repa
       keyPoses: repairKeys(raw.keyPoses, duration, repairs),
       ranges: repairRanges(raw.ranges, duration, repairs),
       dials: repairDials(raw.dials, repairs),
-      avatar: typeof raw.avatar === 'string' && raw.avatar !== '' ? raw.avatar.slice(0, 100) : DEFAULT_AVATAR,
+      avatar: repairAvatar(raw.avatar, repairs),
       camera: repairPart(cameraSchema, raw.camera, 'The camera was damaged: the opening view is shown.', repairs),
     },
     repairs,
   };
+}
+
+function repairAvatar(value: unknown, repairs: string[]): string {
+  if (value === undefined) return DEFAULT_AVATAR;
+  if (typeof value === 'string' && value !== '' && value.length <= 100) return value;
+  repairs.push('The figure was damaged: Posebeat’s own dances.');
+  return DEFAULT_AVATAR;
 }
 
 function repairPart<S extends v.GenericSchema>(
@@ -101,10 +111,16 @@ function repairGrid(value: unknown, repairs: string[]): BeatGrid | null {
   const message = 'The edited beats were damaged: the song’s own beats are used.';
   const grid = repairPart(gridSchema, value, message, repairs);
   if (!grid) return null;
-  const ascending = (list: number[]) => list.every((time, i) => i === 0 || time > list[i - 1]);
-  if (ascending(grid.beats) && ascending(grid.downbeats)) return grid;
-  repairs.push(message);
-  return null;
+  const apart = (list: number[]) => list.every((time, i) => i === 0 || time - list[i - 1] >= MIN_BEAT);
+  if (grid.beats.length === 0 || !apart(grid.beats) || !apart(grid.downbeats)) {
+    repairs.push(message);
+    return null;
+  }
+  const beats = new Set(grid.beats);
+  const downbeats = grid.downbeats.filter((time) => beats.has(time));
+  if (downbeats.length === grid.downbeats.length) return grid;
+  repairs.push('Some bars of the edited beats began between two beats and were left out.');
+  return { ...grid, downbeats };
 }
 
 function repairDials(value: unknown, repairs: string[]): Dials {
@@ -134,21 +150,41 @@ function repairKeys(value: unknown, duration: number, repairs: string[]): KeyPos
   const kept: KeyPose[] = [];
   const ids = new Set<string>();
   let broken = 0;
+  let trimmed = 0;
   for (const entry of value) {
-    const named = typeof entry === 'object' && entry !== null ? { id: nextKeyId(kept), ...entry } : entry;
+    const plain = withoutBadExtras(entry);
+    const named = typeof plain === 'object' && plain !== null ? { id: nextKeyId(kept), ...plain } : plain;
     const parsed = v.safeParse(keyPoseSchema, named);
     if (!parsed.success || parsed.output.time > duration) {
       broken += 1;
       continue;
     }
+    if (plain !== entry) trimmed += 1;
     const id = ids.has(parsed.output.id) ? nextKeyId(kept) : parsed.output.id;
     ids.add(id);
     kept.push({ ...parsed.output, id });
   }
   if (broken > 0) repairs.push(`${broken} damaged key pose${broken === 1 ? ' was' : 's were'} left out.`);
+  if (trimmed > 0) {
+    repairs.push(
+      `The name, lock or strength of ${trimmed} key pose${trimmed === 1 ? ' was' : 's were'} damaged and left out.`,
+    );
+  }
   const sorted = sortKeys(kept);
   const doubled = kept.length - sorted.length;
   if (doubled > 0)
     repairs.push(`${doubled} key pose${doubled === 1 ? '' : 's'} shared a frame with another and gave way.`);
   return sorted;
+}
+
+/** A damaged name, lock or strength is no reason to lose the pose: the entry without what is damaged, or the entry itself. */
+function withoutBadExtras(entry: unknown): unknown {
+  if (typeof entry !== 'object' || entry === null) return entry;
+  const { entries } = keyPoseSchema;
+  const raw = entry as Record<string, unknown>;
+  const bad = (['name', 'locked', 'strength'] as const).filter(
+    (name) => Object.hasOwn(raw, name) && !v.is(entries[name], raw[name]),
+  );
+  if (bad.length === 0) return entry;
+  return Object.fromEntries(Object.entries(raw).filter(([name]) => !bad.some((each) => each === name)));
 }

@@ -71,6 +71,7 @@ export const takeRangeSchema = v.pipe(
     chosen: v.nullable(id),
   }),
   v.check((value) => ordered(value)),
+  v.check(({ takes }) => new Set(takes.map((take) => take.id)).size === takes.length),
   v.check(({ chosen, takes }) => chosen === null || takes.some((take) => take.id === chosen)),
 );
 /** A camera's place and what it looks at. */

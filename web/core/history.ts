@@ -108,8 +108,12 @@ export class History<T> {
     const change = (step: Step<T>) => ({ ...step, state: edit(step.state) });
     this.#past = this.#past.map(change);
     this.#future = this.#future.map(change);
-    this.#present = edit(this.#present);
-    if (this.#captured) this.#captured = { state: edit(this.#captured.state) };
+    const before = this.#present;
+    this.#present = edit(before);
+    if (!this.#captured) return;
+    // A capture in which nothing has changed yet must stay one in which nothing has changed.
+    const untouched = Object.is(this.#captured.state, before);
+    this.#captured = { state: untouched ? this.#present : edit(this.#captured.state) };
   }
 
   /** Takes the last step back for good: something failed, and redo must not bring it again. */
