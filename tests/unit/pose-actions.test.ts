@@ -277,11 +277,12 @@ describe('blending', () => {
 describe('turning and variations', () => {
   it('turns the figure live, one step a drag', async () => {
     const { store, draft } = await editor();
-    for (const degrees of [10, 40, 90]) store.previewTurn(degrees);
-    store.commitTurn();
+    for (const degrees of [10, 40, 90]) store.previewHeading(degrees);
+    store.settlePose();
     expect(headingOfPose(draft().rotations)).toBeCloseTo(Math.PI / 2, 9);
-    store.turnFigure(-90);
-    expect(headingOfPose(draft().rotations)).toBeCloseTo(0, 9);
+    store.previewHeading(-30);
+    store.settlePose();
+    expect(headingOfPose(draft().rotations)).toBeCloseTo(-Math.PI / 6, 9);
     store.undo();
     store.undo();
     expect(draft().rotations).toEqual(REST);
@@ -291,8 +292,9 @@ describe('turning and variations', () => {
     const { store, draft, at } = await editor();
     const seen: string[] = [];
     let furthest = 0;
+    store.setVariationAmount(0.5);
     for (let i = 0; i < 30; i++) {
-      store.varyPose(0.5);
+      store.varyPose();
       seen.push(JSON.stringify(draft().rotations));
       for (let joint = 1; joint < JOINT_COUNT; joint++)
         expect(withinLimits(joint, axisAngleToQuaternion(at(joint)))).toBe(true);

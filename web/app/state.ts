@@ -204,6 +204,8 @@ export function createState() {
     /** What was copied in the pose editor last. */
     poseClip: signal<PoseClip | null>(null),
     poseBlend: signal<PoseBlend | null>(null),
+    /** How wild random variations are, 0..1. */
+    variationAmount: signal(0.4),
     /** A short word on what just happened to the pose, shown over the stage. */
     poseWord: signal(''),
     /** What key poses snap to. */

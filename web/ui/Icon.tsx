@@ -37,8 +37,38 @@ import warning from 'lucide-static/icons/triangle-alert.svg?raw';
 import close from 'lucide-static/icons/x.svg?raw';
 import zoomIn from 'lucide-static/icons/zoom-in.svg?raw';
 import zoomOut from 'lucide-static/icons/zoom-out.svg?raw';
+import axes from 'lucide-static/icons/axis-3d.svg?raw';
+import balance from 'lucide-static/icons/scale.svg?raw';
+import blend from 'lucide-static/icons/blend.svg?raw';
+import bone from 'lucide-static/icons/bone.svg?raw';
+import bothSides from 'lucide-static/icons/unfold-horizontal.svg?raw';
+import copy from 'lucide-static/icons/copy.svg?raw';
+import feet from 'lucide-static/icons/footprints.svg?raw';
+import move3d from 'lucide-static/icons/move-3d.svg?raw';
+import paste from 'lucide-static/icons/clipboard-paste.svg?raw';
+import pushpin from 'lucide-static/icons/pin.svg?raw';
+import rotate3d from 'lucide-static/icons/rotate-3d.svg?raw';
+import otherSide from 'lucide-static/icons/arrow-left-right.svg?raw';
+import upright from 'lucide-static/icons/accessibility.svg?raw';
+import turn from 'lucide-static/icons/orbit.svg?raw';
+import globe from 'lucide-static/icons/globe.svg?raw';
 
 const ICONS = {
+  axes,
+  balance,
+  blend,
+  bone,
+  bothSides,
+  copy,
+  feet,
+  move3d,
+  paste,
+  pushpin,
+  rotate3d,
+  otherSide,
+  upright,
+  turn,
+  globe,
   activity,
   check,
   chevronLeft,

@@ -9,6 +9,8 @@ export interface Shortcut {
   label: string;
   group: 'Play' | 'Key poses' | 'Pose editor' | 'View' | 'Project';
   run(store: Store): void;
+  /** Where it is given and says no, the keys are somebody else's. */
+  when?(store: Store): boolean;
   /** Works while a text field has the focus. */
   everywhere?: boolean;
 }
@@ -19,6 +21,8 @@ const selectedOrHere = (store: Store): ReadonlySet<string> => {
   const here = document.value.keyPoses.find((key) => Math.abs(key.time - time.value) < 1 / 30);
   return new Set(here ? [here.id] : []);
 };
+
+const posing = (store: Store): boolean => store.state.draft.value !== null;
 
 /** All shortcuts, in the order of the help overlay. */
 export const SHORTCUTS: readonly Shortcut[] = [
@@ -63,6 +67,110 @@ export const SHORTCUTS: readonly Shortcut[] = [
     group: 'Key poses',
     run: (store) => store.cycleSnap(),
   },
+  {
+    id: 'pose-rotate',
+    keys: ['E'],
+    label: 'Turn joints',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.setPoseMode('rotate'),
+  },
+  {
+    id: 'pose-move',
+    keys: ['W'],
+    label: 'Move joints; the body follows',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.setPoseMode('move'),
+  },
+  {
+    id: 'pose-space',
+    keys: ['X'],
+    label: 'World axes, or the joint’s own',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.toggleSpace(),
+  },
+  {
+    id: 'pose-limits',
+    keys: ['J'],
+    label: 'Joint limits',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.toggleLimits(),
+  },
+  {
+    id: 'pose-mirror',
+    keys: ['Shift+M'],
+    label: 'Move both sides, mirrored',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.toggleMirrorEdit(),
+  },
+  {
+    id: 'pose-pin',
+    keys: ['P'],
+    label: 'Pin the chosen joint where it is',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.togglePin(),
+  },
+  {
+    id: 'pose-balance',
+    keys: ['B'],
+    label: 'Show the balance',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.toggleBalance(),
+  },
+  {
+    id: 'pose-copy',
+    keys: ['Mod+C'],
+    label: 'Copy the pose',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.copyPose(),
+  },
+  {
+    id: 'pose-copy-limb',
+    keys: ['Shift+C'],
+    label: 'Copy the limb of the chosen joint',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.copyLimbOfJoint(),
+  },
+  {
+    id: 'pose-paste',
+    keys: ['Mod+V'],
+    label: 'Paste the copied pose or limb',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.pastePose(),
+  },
+  {
+    id: 'pose-vary',
+    keys: ['R'],
+    label: 'Another random variation',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.varyPose(),
+  },
+  {
+    id: 'pose-reset',
+    keys: ['Shift+R'],
+    label: 'Reset the pose',
+    group: 'Pose editor',
+    when: posing,
+    run: (store) => store.resetPose(),
+  },
+  {
+    id: 'pose-onto-keys',
+    keys: ['Shift+V'],
+    label: 'Paste the copied pose onto the selected key poses',
+    group: 'Key poses',
+    when: (store) => !posing(store) && store.state.poseClip.value !== null,
+    run: (store) => store.pastePoseOntoKeys(),
+  },
   { id: 'undo', keys: ['Mod+Z'], label: 'Undo', group: 'Project', run: (store) => store.undo() },
   { id: 'redo', keys: ['Mod+Shift+Z', 'Mod+Y'], label: 'Redo', group: 'Project', run: (store) => store.redo() },
   {
@@ -106,6 +214,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
     everywhere: true,
     run: (store) => {
       if (store.state.help.value) store.toggleHelp(false);
+      else if (store.cancelBlend()) return;
       else if (store.state.draft.value) store.closeDraft();
       else store.selectKey(null);
     },
@@ -158,6 +267,7 @@ export function bindShortcuts(store: Store, target: Window): () => void {
     for (const shortcut of SHORTCUTS) {
       if ((typing || pressing) && !shortcut.everywhere) continue;
       if (!shortcut.keys.some((combo) => matches(event, combo))) continue;
+      if (shortcut.when && !shortcut.when(store)) continue;
       event.preventDefault();
       shortcut.run(store);
       return;

@@ -1,5 +1,6 @@
 /** What the editor does to the pose itself: typed values, resets, mirroring, levelling, turning, variation. */
 import {
+  headingOfPose,
   levelFeet,
   LIMBS,
   mirrorJointEdit,
@@ -72,22 +73,22 @@ export function poseShapeActions(context: Context, desk: PoseDesk, math: PoseMat
     /** Puts the soles of the standing feet flat. */
     levelFeet: () => desk.push(levelFeet(desk.present, clamp()), 'Level feet'),
 
-    /** Shows the whole figure turned by some degrees about the vertical; `commitTurn` keeps it as one step. */
-    previewTurn: (degrees: number) => desk.attempt(turnPose(desk.base(TURN), (degrees * Math.PI) / 180), TURN),
-    commitTurn: () => desk.settle(),
-    /** Turns the whole figure by some degrees about the vertical. */
-    turnFigure: (degrees: number) => desk.push(turnPose(desk.present, (degrees * Math.PI) / 180), TURN),
+    /** Shows the whole figure facing a way, degrees about the vertical, 0 = to the front; `settlePose` keeps it as one step. */
+    previewHeading(degrees: number): void {
+      const base = desk.base(TURN);
+      desk.attempt(turnPose(base, (degrees * Math.PI) / 180 - headingOfPose(base)), TURN);
+    },
+    settlePose: desk.settle,
 
-    /**
-     * A random variation; each call is another one.
-     * @param amount 0..1
-     */
-    varyPose(amount: number): void {
+    setVariationAmount: (amount: number) => (state.variationAmount.value = amount),
+
+    /** A random variation, as wild as chosen; each call is another one. */
+    varyPose(): void {
       desk.settle();
       const again = variation !== null && samePose(variation.result, desk.present);
       const base = again ? variation!.base : desk.present;
       const seed = (variation?.seed ?? 0) + 1;
-      const result = randomPose(base, amount, seed, clamp());
+      const result = randomPose(base, state.variationAmount.value, seed, clamp());
       desk.push(result, 'Random variation');
       variation = { base, result, seed };
     },
