@@ -1,34 +1,14 @@
 /** Times and beats: where a pose snaps to, what a time is called. */
+import { beatCount } from '../core/beat-count';
+import { lowerBound, snapTime } from '../core/snap';
 import type { BeatGrid } from '../core/types';
 
-/** Index of the first value >= time in an ascending list. */
-export function lowerBound(list: readonly number[], time: number): number {
-  let low = 0;
-  let high = list.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (list[middle] < time) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
+export { stepBeat } from '../core/beat-count';
+export { lowerBound, snapTime } from '../core/snap';
 
 /** The beat nearest to a time; the time itself when there are no beats. */
 export function nearestBeat(grid: BeatGrid | null, time: number): number {
-  if (!grid || grid.beats.length === 0) return time;
-  const after = lowerBound(grid.beats, time);
-  const next = grid.beats[Math.min(after, grid.beats.length - 1)];
-  const previous = grid.beats[Math.max(0, after - 1)];
-  return Math.abs(next - time) < Math.abs(time - previous) ? next : previous;
-}
-
-/** The beat before (-1) or after (1) a time; half a second on where there is none. */
-export function stepBeat(grid: BeatGrid | null, time: number, direction: -1 | 1): number {
-  const beats = grid?.beats ?? [];
-  // A pose on a beat must move on, although its time is the beat's only to a rounding error.
-  const margin = 1e-3;
-  const index = direction > 0 ? lowerBound(beats, time + margin) : lowerBound(beats, time - margin) - 1;
-  return beats[index] ?? time + direction * 0.5;
+  return snapTime(grid, time, 'beat');
 }
 
 /** Bar and beat of a time, both from 1; null before the first bar or without beats. */
@@ -39,6 +19,25 @@ export function barAndBeat(grid: BeatGrid | null, time: number): { bar: number; 
   const start = lowerBound(grid.beats, grid.downbeats[bar - 1] - 1e-3);
   const beat = lowerBound(grid.beats, time + 1e-3) - start;
   return { bar, beat: Math.max(1, beat) };
+}
+
+/** The beat of a time inside its bar with its fraction, from 1; null before the first bar or without beats. */
+export function exactBeat(grid: BeatGrid | null, time: number): number | null {
+  const place = barAndBeat(grid, time);
+  if (!grid || !place) return null;
+  const count = beatCount(grid);
+  return Math.round((count.of(time) - count.of(grid.downbeats[place.bar - 1]) + 1) * 1000) / 1000;
+}
+
+/** The time of a beat (from 1, with fractions) in a bar (from 1); after the last bar the beats go on. */
+export function timeOfBeat(grid: BeatGrid, bar: number, beat: number): number {
+  const count = beatCount(grid);
+  const start = grid.downbeats[bar - 1];
+  return count.time(
+    (start === undefined ? count.of(grid.downbeats[0] ?? 0) + (bar - 1) * grid.beatsPerBar : count.of(start)) +
+      beat -
+      1,
+  );
 }
 
 /** m:ss.t, as the transport shows it. */

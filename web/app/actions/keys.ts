@@ -1,40 +1,72 @@
-/** Key poses on the timeline: add, move, delete, select, undo. */
-import { checkKeyPoses, frameOf, nextKeyId, sortKeys } from '../../core/document';
+/** Key poses on the timeline: add, change, delete, undo. Moving and copying: key-moves.ts. */
+import { checkKeyPoses, frameOf, nextKeyId } from '../../core/document';
+import { deleteKeys, editKeys, lastKeyTime, setStrength, settleKeys, toggleLock } from '../../core/key-ops';
 import { mirrorPose } from '../../core/skeleton';
-import spec from '../../core/spec.json';
+import { snapTime } from '../../core/snap';
 import type { KeyPose } from '../../core/types';
 import type { Context } from '../context';
-import { nearestBeat, stepBeat } from '../snapping';
+import { keyMoves } from './key-moves';
+import { keySelection } from './key-selection';
 
-const FRAME = 1 / spec.fps;
+/** Said when something locked should have changed. */
+export const LOCKED_NOTICE = 'That key pose is locked and stays as it is: unlock it first.';
+
+const plural = (count: number) => (count === 1 ? 'key pose' : `${count} key poses`);
 
 /** Actions on key poses. */
 export function keyActions(context: Context) {
   const { state, history } = context;
-  let dragOrigin: KeyPose[] | null = null;
+  let strengthDrag = false;
 
-  const clampTime = (time: number) => Math.min(Math.max(time, 0), Math.max(0, state.duration.value - FRAME));
-  const setKeys = (label: string, keyPoses: KeyPose[]) =>
-    context.change(label, (document) => ({ ...document, keyPoses: sortKeys(keyPoses) }));
-  const selectOnly = (id: string) => (state.selection.value = new Set([id]));
-
-  const moved = (keys: readonly KeyPose[], ids: ReadonlySet<string>, to: (key: KeyPose) => number): KeyPose[] => {
-    const still = keys.filter((key) => !ids.has(key.id));
-    // Moved ones come last: sortKeys lets the last of two on one frame stay.
-    return [...still, ...keys.filter((key) => ids.has(key.id)).map((key) => ({ ...key, time: clampTime(to(key)) }))];
+  const keysNow = () => state.document.value.keyPoses;
+  const setKeys = (label: string, keys: readonly KeyPose[]) =>
+    context.change(label, (document) =>
+      keys === document.keyPoses ? document : { ...document, keyPoses: keys as KeyPose[] },
+    );
+  const chosenKeys = (ids: ReadonlySet<string> = state.selection.value) => keysNow().filter((key) => ids.has(key.id));
+  /** Says why locked ones among these stay. Returns false when there is none to work on. */
+  const allowed = (ids: ReadonlySet<string>): boolean => {
+    const chosen = chosenKeys(ids);
+    const locked = chosen.filter((key) => key.locked).length;
+    if (locked === 1 && chosen.length === 1) context.notify('info', LOCKED_NOTICE);
+    else if (locked > 0) {
+      context.notify(
+        'info',
+        `${locked === chosen.length ? 'These key poses are locked and stay' : `${locked} of them ${locked === 1 ? 'is' : 'are'} locked and stay${locked === 1 ? 's' : ''}`} as ${locked === 1 ? 'it is' : 'they are'}: unlock first.`,
+      );
+    }
+    return locked < chosen.length;
   };
+  const tools = { keysNow, setKeys, chosenKeys, allowed };
+  const selection = keySelection(context);
+  const moves = keyMoves(context, tools);
 
   return {
-    /** Puts a pose on the timeline and selects it. Without `exact` it snaps to the nearest beat. Returns its id. */
+    ...selection,
+    ...moves,
+
+    /** Where a pose lands that is put at a time: on what key poses snap to, unless `exact`. */
+    snapTime: (time: number, exact = false): number =>
+      exact ? time : snapTime(state.grid.value, time, state.snap.value),
+
+    /**
+     * Puts a pose on the timeline and selects it. Without `exact` it snaps. Returns its id, or '' when a locked key pose is there:
+     * then nothing happens.
+     */
     addKey(rotations: readonly number[], time: number, options: { name?: string; exact?: boolean } = {}): string {
-      const at = clampTime(options.exact ? time : nearestBeat(state.grid.value, time));
-      const { keyPoses } = state.document.value;
-      const replaced = keyPoses.find((key) => frameOf(key.time) === frameOf(at));
-      const id = nextKeyId(keyPoses);
+      const snapped = this.snapTime(time, options.exact);
+      const at = Math.min(Math.max(snapped, 0), lastKeyTime(state.duration.value));
+      const keys = keysNow();
+      const replaced = keys.find((key) => frameOf(key.time) === frameOf(at));
+      if (replaced?.locked) {
+        context.notify('info', 'The key pose there is locked: unlock it to put another in its place.');
+        return '';
+      }
+      const id = nextKeyId(keys);
       const key: KeyPose = { id, time: at, rotations: [...rotations] };
       if (options.name) key.name = options.name;
-      setKeys(replaced ? 'Replace key pose' : 'Add key pose', [...keyPoses, key]);
-      selectOnly(id);
+      setKeys(replaced ? 'Replace key pose' : 'Add key pose', settleKeys(keys, [key], state.duration.value));
+      selection.selectKey(id);
       context.announce(
         `${options.name ?? 'Pose'} ${replaced ? 'replaces the pose' : 'added'} at ${at.toFixed(2)} seconds.`,
       );
@@ -43,99 +75,78 @@ export function keyActions(context: Context) {
 
     /** Deletes the selected key poses, or those given. */
     deleteKeys(ids: ReadonlySet<string> = state.selection.value): void {
-      const { keyPoses } = state.document.value;
-      const left = keyPoses.filter((key) => !ids.has(key.id));
-      const count = keyPoses.length - left.length;
-      if (count === 0) return;
-      setKeys(count === 1 ? 'Delete key pose' : `Delete ${count} key poses`, left);
-      state.selection.value = new Set();
-      context.announce(`${count} key pose${count === 1 ? '' : 's'} deleted.`);
-    },
-
-    /** Selects one key pose; `extend` adds it or takes it out. Never a step of undo. */
-    selectKey(id: string | null, extend = false): void {
-      if (id === null) state.selection.value = new Set();
-      else if (!extend) selectOnly(id);
-      else {
-        const next = new Set(state.selection.value);
-        if (!next.delete(id)) next.add(id);
-        state.selection.value = next;
-      }
-    },
-
-    /** Selects all key poses. */
-    selectAll(): void {
-      state.selection.value = new Set(state.document.value.keyPoses.map((key) => key.id));
-    },
-
-    /** A drag of the selected key poses begins. */
-    beginMove(): void {
-      dragOrigin = state.document.value.keyPoses;
-      history.capture();
-    },
-
-    /** The dragged key poses, `seconds` from where they began; the one named by `anchor` snaps to a beat unless `exact`. */
-    previewMove(seconds: number, anchor: string, exact: boolean): void {
-      if (!dragOrigin || !history.capturing) return;
-      const ids = state.selection.value;
-      const lead = dragOrigin.find((key) => key.id === anchor);
-      if (!lead) return;
-      const target = clampTime(exact ? lead.time + seconds : nearestBeat(state.grid.value, lead.time + seconds));
-      const shift = target - lead.time;
-      const keyPoses = sortKeys(moved(dragOrigin, ids, (key) => key.time + shift));
-      history.preview({ ...history.present, keyPoses: shift === 0 ? dragOrigin : keyPoses });
-      context.sync();
-    },
-
-    /** The drag ends where it is: one step of undo. */
-    commitMove(): void {
-      if (!dragOrigin) return;
-      if (state.document.value.keyPoses === dragOrigin) history.discard();
-      else history.commit('Move key pose');
-      dragOrigin = null;
-      context.sync();
-    },
-
-    /** The drag never happened. */
-    discardMove(): void {
-      if (!dragOrigin) return;
-      dragOrigin = null;
-      history.discard();
-      context.sync();
-    },
-
-    /** Moves the selected key poses by a beat or a frame; direction is -1 or 1. */
-    nudgeKeys(direction: -1 | 1, unit: 'beat' | 'frame'): void {
-      const ids = state.selection.value;
-      const { keyPoses } = state.document.value;
-      if (!keyPoses.some((key) => ids.has(key.id))) return;
-      const grid = state.grid.value;
-      const next = moved(keyPoses, ids, (key) =>
-        unit === 'frame' ? (frameOf(key.time) + direction) * FRAME : stepBeat(grid, key.time, direction),
-      );
-      setKeys('Move key pose', next);
-      const first = state.document.value.keyPoses.find((key) => ids.has(key.id));
-      if (first) context.announce(`Key pose at ${first.time.toFixed(2)} seconds.`);
+      if (!allowed(ids)) return;
+      const before = keysNow();
+      const left = deleteKeys(before, ids);
+      const count = before.length - left.length;
+      setKeys(`Delete ${plural(count)}`, left);
+      context.announce(`${plural(count)} deleted.`);
     },
 
     /** Mirrors the selected key poses. */
     mirrorKeys(): void {
       const ids = state.selection.value;
-      const { keyPoses } = state.document.value;
-      if (!keyPoses.some((key) => ids.has(key.id))) return;
+      if (!allowed(ids)) return;
       setKeys(
         'Mirror key pose',
-        keyPoses.map((key) => (ids.has(key.id) ? { ...key, rotations: mirrorPose(key.rotations) } : key)),
+        editKeys(keysNow(), ids, (key) => ({ ...key, rotations: mirrorPose(key.rotations) })),
       );
     },
 
-    /** Gives a key pose other rotations. */
-    updateKey(id: string, rotations: readonly number[]): void {
-      const { keyPoses } = state.document.value;
+    /** Gives a key pose other rotations. Returns false when it is locked. */
+    updateKey(id: string, rotations: readonly number[]): boolean {
+      if (!allowed(new Set([id]))) return false;
       setKeys(
         'Edit key pose',
-        keyPoses.map((key) => (key.id === id ? { ...key, rotations: [...rotations] } : key)),
+        editKeys(keysNow(), new Set([id]), (key) => ({ ...key, rotations: [...rotations] })),
       );
+      return true;
+    },
+
+    /** Names a key pose; an empty name takes its name away. */
+    renameKey(id: string, name: string): void {
+      const ids = new Set([id]);
+      const text = name.trim().slice(0, 200);
+      const key = keysNow().find((each) => each.id === id);
+      if (!key || (key.name ?? '') === text || !allowed(ids)) return;
+      const edited: KeyPose = { ...key, name: text };
+      if (!text) delete edited.name;
+      setKeys(
+        'Rename key pose',
+        editKeys(keysNow(), ids, () => edited),
+      );
+    },
+
+    /** Shows what another strength of the selected key poses would do; `setKeyStrength` ends it. */
+    previewKeyStrength(value: number): void {
+      if (!strengthDrag || !history.capturing) {
+        if (!allowed(state.selection.value)) return;
+        history.capture();
+        strengthDrag = true;
+      }
+      history.preview({
+        ...history.present,
+        keyPoses: setStrength(history.present.keyPoses, state.selection.value, value) as KeyPose[],
+      });
+      context.sync();
+    },
+
+    /** How strongly the dance holds to the selected key poses, 0..1 times the dial: one step of undo. */
+    setKeyStrength(value: number): void {
+      this.previewKeyStrength(value);
+      if (!strengthDrag) return;
+      strengthDrag = false;
+      history.commit('Key pose strength');
+      context.sync();
+    },
+
+    /** Locks the selected key poses; unlocks them when all are locked. */
+    toggleLock(): void {
+      const chosen = chosenKeys();
+      if (chosen.length === 0) return;
+      const lock = chosen.some((key) => !key.locked);
+      setKeys(`${lock ? 'Lock' : 'Unlock'} ${plural(chosen.length)}`, toggleLock(keysNow(), state.selection.value));
+      context.announce(`${plural(chosen.length)} ${lock ? 'locked' : 'unlocked'}.`);
     },
 
     /** Replaces all key poses by checked ones from outside; throws and changes nothing when they are wrong. */
@@ -149,7 +160,7 @@ export function keyActions(context: Context) {
     undo(): void {
       const label = history.undoLabel;
       if (!history.undo()) return;
-      dragOrigin = null;
+      moves.forgetMove();
       context.sync();
       context.announce(`Undone: ${label ?? 'drag'}.`);
     },
