@@ -31,7 +31,7 @@ function badDance(frames: number): Motion {
 
 const clean = (input: Motion, keys: number[] = []) => {
   const output = emptyMotion(input.frames);
-  cleanContacts(input, output, 0, input.frames, { keys, keyStrength: 1 });
+  cleanContacts(input, output, 0, input.frames, { keys: keys.map((frame) => ({ frame, strength: 1 })) });
   return output;
 };
 const lowest = (motion: Motion) => Math.min(...bodyTrack(motion).ground.map((y, t) => motion.root[t * 3 + 1] - y));
@@ -60,7 +60,7 @@ describe('foot contact clean-up', () => {
   it('gives the same floor and no jump at the seam when it works in stretches', () => {
     const input = badDance(240);
     const output = emptyMotion(240);
-    const options = { keys: [], keyStrength: 1 };
+    const options = { keys: [] };
     const seen = { ...input, frames: 100 + LOOKAHEAD };
     const state = cleanContacts(seen, output, 0, 100, options);
     expect(state.frame).toBe(100);

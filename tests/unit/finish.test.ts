@@ -1,7 +1,10 @@
 import { describe, expect, it } from 'vitest';
-import { finishDance, type UncorrectedDance } from '../../web/core/finish';
+import { finishDance, flattened, type UncorrectedDance } from '../../web/core/finish';
 import { consistencyError } from '../../web/core/metrics';
-import type { Motion } from '../../web/core/types';
+import { motionToAxisAngle } from '../../web/core/motion';
+import { sameMotion } from '../../web/core/range-layer';
+import { consistencyPerKey } from '../../web/core/report-curves';
+import type { KeyPose, Motion } from '../../web/core/types';
 import { generateMotion, type GenerationRequest } from '../../web/core/windows';
 import { danceRequest, key, poseWith, slerpNetwork } from './dance';
 
@@ -31,7 +34,29 @@ const apart = (a: Motion, b: Motion, from = 0, to = a.frames) => {
   return most;
 };
 
+/** The key poses with strengths of their own. */
+const softened = keyPoses.map((pose, i) => ({ ...pose, strength: [1, 0.5, 0, 0.8, 1][i] }));
+
 describe('finishing a dance again', () => {
+  it('follows the strength of each key pose, which the network never sees', async () => {
+    const { uncorrected } = await dance(1);
+    const own = await dance(0.9, { keyPoses: softened });
+    expect(sameMotion(own.uncorrected!.motion, uncorrected!.motion)).toBe(true);
+    expect(apart(finishDance(uncorrected!, softened, 0.9), own.motion)).toBe(0);
+    const errors = (keys: KeyPose[]) =>
+      consistencyPerKey(finishDance(uncorrected!, keys, 1), keyPoses).map(({ error }) => error);
+    const [free, soft] = [errors(keyPoses.map((pose) => ({ ...pose, strength: 0 }))), errors(softened)];
+    for (const exact of [0, 4]) expect(soft[exact]).toBeLessThan(1e-9);
+    expect(soft[2]).toBeGreaterThan(0.9 * free[2]);
+    expect(soft[1]).toBeGreaterThan(0.15 * free[1]);
+    expect(soft[1]).toBeLessThan(0.4 * free[1]);
+    // At 0.8 a fifth of the miss is left, and a fifth of what planting the feet does to the pose.
+    expect(soft[3]).toBeLessThan(0.2 * free[3]);
+    // The same product of dial and key is the same dance.
+    const half = keyPoses.map((pose) => ({ ...pose, strength: 0.5 }));
+    expect(apart(finishDance(uncorrected!, half, 1), finishDance(uncorrected!, keyPoses, 0.5))).toBe(0);
+  });
+
   it('gives what generating at that strength gives, without the network', async () => {
     const { uncorrected } = await dance(0.4);
     for (const strength of [0, 0.5, 1]) {
@@ -61,10 +86,10 @@ describe('finishing a dance again', () => {
       previousUncorrected: whole.uncorrected,
       options: { keyStrength: 1, variation: 1, seed: 9, cleanFeet: true },
     });
-    const { uncorrected } = again;
-    expect(apart(uncorrected!.motion, whole.uncorrected!.motion, 0, range.from)).toBe(0);
-    expect(apart(uncorrected!.motion, whole.uncorrected!.motion, range.to)).toBe(0);
-    expect(apart(uncorrected!.motion, whole.uncorrected!.motion, range.from, range.to)).toBeGreaterThan(0.05);
+    const uncorrected = { motion: flattened(again.uncorrected!) };
+    expect(apart(uncorrected.motion, whole.uncorrected!.motion, 0, range.from)).toBe(0);
+    expect(apart(uncorrected.motion, whole.uncorrected!.motion, range.to)).toBe(0);
+    expect(apart(uncorrected.motion, whole.uncorrected!.motion, range.from, range.to)).toBeGreaterThan(0.05);
     const steps = (motion: Motion, t: number) =>
       apart(
         { ...motion, quaternions: motion.quaternions.subarray((t - 1) * 96), root: motion.root.subarray((t - 1) * 3) },
@@ -74,8 +99,39 @@ describe('finishing a dance again', () => {
       );
     const largest = Math.max(...Array.from({ length: 599 }, (_, t) => steps(whole.uncorrected!.motion, t + 1)));
     for (const edge of [range.from, range.to]) {
-      for (let t = edge - 2; t <= edge + 2; t++) expect(steps(uncorrected!.motion, t)).toBeLessThan(largest * 1.5);
+      for (let t = edge - 2; t <= edge + 2; t++) expect(steps(uncorrected.motion, t)).toBeLessThan(largest * 1.5);
     }
+  });
+
+  it('is the same for ranges laid over it, whatever the strength was when they were made', async () => {
+    const keysNow = softened;
+    const ranges = [
+      { from: 90, to: 215, seed: 4 },
+      { from: 200, to: 330, seed: 5 },
+      { from: 470, to: 600, seed: 6 },
+    ];
+    const layered = async (strengths: number[]) => {
+      let made = await dance(strengths[0], { keyPoses: keysNow });
+      for (const [i, { from, to, seed }] of ranges.entries()) {
+        made = await dance(strengths[i + 1], {
+          keyPoses: keysNow,
+          range: { from, to },
+          previousUncorrected: made.uncorrected,
+          options: { keyStrength: 1, variation: 0.6, seed, cleanFeet: true },
+        });
+      }
+      return made;
+    };
+    const once = await layered([0.7, 0.7, 0.7, 0.7]);
+    const moved = await layered([1, 0, 0.2, 0.4]);
+    expect(apart(finishDance(moved.uncorrected!, keysNow, 0.7), once.motion)).toBe(0);
+    expect(apart(finishDance(once.uncorrected!, keysNow, 0.4), moved.motion)).toBe(0);
+    // Between the ranges nothing changed (a quaternion and its negative are one rotation).
+    const before = await dance(0.7, { keyPoses: keysNow });
+    const angles = motionToAxisAngle(once.motion);
+    const former = motionToAxisAngle(before.motion);
+    for (let i = 330 * 72; i < 470 * 72; i++) expect(Math.abs(angles[i] - former[i])).toBeLessThan(1e-6);
+    for (let i = 330 * 3; i < 470 * 3; i++) expect(once.motion.root[i]).toBe(before.motion.root[i]);
   });
 
   it('hands no uncorrected form of a range out when it has none of the rest', async () => {

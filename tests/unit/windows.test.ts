@@ -94,7 +94,7 @@ describe('a generated dance', () => {
   it('shows final frames while it is made', async () => {
     const parts: Motion[] = [];
     const motion = await generateMotion(danceRequest(25, { keyPoses }), slerpNetwork, {
-      onPartial: (part) => parts.push(part),
+      onPartial: (part) => parts.push(part!),
     });
     expect(parts.length).toBeGreaterThanOrEqual(2);
     let before = 0;

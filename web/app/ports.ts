@@ -61,7 +61,7 @@ export interface Engine {
   /** Rejects with an AbortError when `signal` fires. */
   generate(
     request: DanceRequest,
-    onPartial: (motion: Motion, fraction: number, windows: number) => void,
+    onPartial: (motion: Motion | null, fraction: number, windows: number) => void,
     signal: AbortSignal,
   ): Promise<DanceResult>;
 }

@@ -2,7 +2,8 @@
  * What the report worker does with its messages: one small task at a time, the most urgent first. What the visitor drags comes before
  * numbers, numbers before the plot; of drafts and plots only the newest counts.
  */
-import { finishDance, type UncorrectedDance } from '../core/finish';
+import { keysWithin } from '../core/excerpt';
+import { finishDance, flattened, type UncorrectedDance } from '../core/finish';
 import { copyFrames, sliceMotion } from '../core/motion';
 import { tradeOffPoint } from '../core/report-curves';
 import type { KeyPose, Motion } from '../core/types';
@@ -147,21 +148,21 @@ export class ReportDesk {
  * figure does not jump; the whole dance follows when the dial rests.
  */
 export function draftAround(
-  { motion }: UncorrectedDance,
+  dance: UncorrectedDance,
   shown: Motion,
   keyPoses: readonly KeyPose[],
   strength: number,
   near: number,
 ): Motion {
+  const motion = flattened(dance);
+  const begin = dance.place?.from ?? 0;
   const reach = DRAFT_REACH * motion.fps;
-  const from = Math.max(0, Math.round(near) - reach);
-  const to = Math.min(motion.frames, Math.round(near) + reach);
-  const keys = keyPoses
-    .map((key) => ({ ...key, time: key.time - from / motion.fps }))
-    .filter((key) => key.time >= 0 && key.time * motion.fps < to - from);
+  const from = Math.max(begin, Math.round(near) - reach);
+  const to = Math.min(begin + motion.frames, Math.round(near) + reach);
   const draft = sliceMotion(shown, 0, shown.frames);
   if (to - from < 2) return draft;
-  const part = finishDance({ motion: sliceMotion(motion, from, to), stretches: [] }, keys, strength);
+  const keys = keysWithin(keyPoses, from, to).filter((key) => key.time * motion.fps < to - from - 0.5);
+  const part = finishDance({ motion: sliceMotion(motion, from - begin, to - begin), stretches: [] }, keys, strength);
   for (let t = 0; t < part.frames; t++) {
     for (const k of [0, 2]) part.root[t * 3 + k] = shown.root[(from + t) * 3 + k];
   }

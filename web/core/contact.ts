@@ -32,12 +32,17 @@ export interface ContactState {
   feet: FootBorder[];
 }
 
+/** A key pose as the clean-up knows it. */
+export interface FirmKey {
+  frame: number;
+  /** 0..1: at 1 the pose is exact and must stay so. */
+  strength: number;
+}
+
 /** What is known about the keys and the borders. */
 export interface ContactOptions {
-  /** Frames of the exact keys. */
-  keys: readonly number[];
-  /** 0..1: at 1 the pose at a key is left alone. */
-  keyStrength: number;
+  /** Where the keys are and how firmly each is hit, 0..1: at 1 its pose is left alone. */
+  keys: readonly FirmKey[];
   /** Result of the stretch before; none at the start of a dance. */
   state?: ContactState;
   /** Frames from the end of the stretch on are fixed in `output`. */
@@ -82,8 +87,10 @@ export function cleanContacts(
   copyFrames(input, from, high, work, 0);
   for (let i = 0; i < count; i++) pelvis.set([way.path[i * 2], y[i], way.path[i * 2 + 1]], i * 3);
 
-  const keys = options.keys.filter((key) => key >= from && key < high).map((key) => key - from);
-  const feetAt = plantFeet({ work, track, at, pelvis, keys, keyStrength: options.keyStrength, state, end });
+  const keys = options.keys
+    .filter(({ frame, strength }) => strength > 0 && frame >= from && frame < high)
+    .map(({ frame, strength }) => ({ frame: frame - from, strength }));
+  const feetAt = plantFeet({ work, track, at, pelvis, keys, state, end });
   raiseAfterLegs(work, pelvis);
   for (let i = 0; i < count * 3; i++) work.root[i] = pelvis[i];
 
@@ -182,25 +189,15 @@ interface Stretch {
   at: number;
   /** Pelvis positions, frames x 3. */
   pelvis: Float64Array;
-  /** Frames of exact keys inside the stretch. */
-  keys: number[];
-  keyStrength: number;
+  /** Keys inside the stretch that are hit at all, counted from its start. */
+  keys: FirmKey[];
   state?: ContactState;
   end?: ContactState;
 }
 
 /** Plants both feet by moving the legs; returns what the next stretch must know at a frame. */
-function plantFeet({
-  work,
-  track,
-  at,
-  pelvis,
-  keys,
-  keyStrength,
-  state,
-  end,
-}: Stretch): (frame: number) => FootBorder[] {
-  const exact = keyStrength > 0 ? keys : [];
+function plantFeet({ work, track, at, pelvis, keys, state, end }: Stretch): (frame: number) => FootBorder[] {
+  const exact = keys.map(({ frame }) => frame);
   const paths = [0, 1].map((foot) => {
     const sole = SOLES.findIndex((point) => point.foot === foot && !point.heel);
     const path = new Float64Array(work.frames * 3);
@@ -215,7 +212,7 @@ function plantFeet({
   const offsets = paths.map((path, foot) => {
     const moved = footOffsets(path, plants[foot], exact, borders[foot], end?.feet[foot]);
     liftSwing(path, moved, plants[foot], plants[1 - foot], work.fps);
-    for (const key of exact) keepKey(moved, key, keyStrength);
+    for (const { frame, strength } of keys) keepKey(moved, frame, strength);
     return moved;
   });
   for (const foot of [0, 1] as const) {

@@ -12,6 +12,13 @@ export interface FrameKey {
   frame: number;
   /** 24 x 4 local rotations. */
   quaternions: Float32Array;
+  /** 0..1, times the dance's key strength; missing = 1. */
+  strength?: number;
+}
+
+/** How firmly a key is hit, 0..1: the dial's key strength times the key's own. */
+export function effectiveStrength(dial: number, own: number | undefined): number {
+  return Math.min(1, Math.max(0, dial * (own ?? 1)));
 }
 
 /** Seconds on each side of a key that its correction reaches at most; a large residual is given more room than a small one. */
@@ -28,26 +35,36 @@ export function keysOnFrames(keyPoses: readonly KeyPose[], fps: number, frames: 
     // A key on the very last instant rounds to the frame after the last: it belongs to the last.
     const inside = frame === frames ? frames - 1 : frame;
     if (inside < 0 || inside >= frames) continue;
-    byFrame.set(inside, { frame: inside, quaternions: poseToQuaternions(key.rotations) });
+    const { strength } = key;
+    const quaternions = poseToQuaternions(key.rotations);
+    byFrame.set(inside, { frame: inside, quaternions, ...(strength === undefined ? {} : { strength }) });
   }
   return [...byFrame.values()].sort((a, b) => a.frame - b.frame);
 }
 
 /**
- * Moves a dance through its keys, in place. At strength 1 each key is hit exactly; the influence of a key is zero at its neighbours.
+ * Moves a dance through its keys, in place. At strength 1 each key is hit exactly; the influence of a key is zero at its neighbours,
+ * however weak they are.
  * @param keys ascending, one a frame
- * @param strength 0 = unchanged .. 1 = exact
+ * @param strength 0 = unchanged .. 1 = exact; times each key's own strength
+ * @param within nothing outside these frames is touched, and the influence of keys fades out towards them
  */
-export function correctToKeys(motion: Motion, keys: readonly FrameKey[], strength: number): void {
-  const amount = Math.min(1, Math.max(0, strength));
-  if (amount === 0) return;
+export function correctToKeys(
+  motion: Motion,
+  keys: readonly FrameKey[],
+  strength: number,
+  within?: { from: number; to: number },
+): void {
+  if (strength <= 0) return;
+  const first = within ? within.from - 1 : -Infinity;
+  const last = within ? within.to : Infinity;
   // Residuals are taken before anything moves: since bumps vanish at the neighbours, the order then does not matter at a key.
   const residuals = keys.map((key) => residual(motion, key));
   keys.forEach((key, i) => {
     const reach = Math.max(2, Math.round(motion.fps * reachOf(residuals[i])));
-    const before = Math.min(reach, i > 0 ? key.frame - keys[i - 1].frame : reach);
-    const after = Math.min(reach, i + 1 < keys.length ? keys[i + 1].frame - key.frame : reach);
-    spread(motion, key.frame, residuals[i], before, after, amount);
+    const before = Math.min(reach, i > 0 ? key.frame - keys[i - 1].frame : reach, key.frame - first);
+    const after = Math.min(reach, i + 1 < keys.length ? keys[i + 1].frame - key.frame : reach, last - key.frame);
+    spread(motion, key.frame, residuals[i], before, after, effectiveStrength(strength, key.strength));
   });
 }
 
@@ -80,6 +97,7 @@ function spread(
   after: number,
   amount: number,
 ): void {
+  if (amount === 0) return;
   const from = Math.max(0, frame - before);
   const to = Math.min(motion.frames - 1, frame + after);
   const turn = [0, 0, 0, 1];

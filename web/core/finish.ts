@@ -2,10 +2,11 @@
  * The last step of a dance, apart from the network: through the key poses as firmly as the dial says, and feet on the floor. A dance that
  * keeps its uncorrected form can be finished again for another strength in no time.
  */
-import { cleanContacts, LOOKAHEAD, type ContactState } from './contact';
-import { correctToKeys, keysOnFrames } from './correction';
+import { cleanContacts, LOOKAHEAD, type ContactState, type FirmKey } from './contact';
+import { correctToKeys, effectiveStrength, keysOnFrames, type FrameKey } from './correction';
+import { heldAround, keysWithin } from './excerpt';
 import { alignSigns, copyFrames, emptyMotion, sliceMotion } from './motion';
-import { joinRange } from './motion-blend';
+import { withLayer, type RangeLayer } from './range-layer';
 import { spec } from './spec';
 import type { KeyPose, Motion } from './types';
 
@@ -18,13 +19,15 @@ export interface UncorrectedDance {
   motion: Motion;
   /** How many frames were there each time a stretch was cleaned; the same stretches again give the same dance again. */
   stretches: readonly number[];
+  /** Ranges made anew, later ones over earlier ones; their frames count in `motion`. */
+  layers?: readonly RangeLayer[];
+  /** Where in a longer song this lies: `motion` begins on frame `from`, and the song has `frames` frames. */
+  place?: { from: number; frames: number };
 }
 
 /** How the feet are cleaned. */
 export interface CleaningOptions {
-  /** Frames of the key poses. */
-  keys: readonly number[];
-  keyStrength: number;
+  keys: readonly FirmKey[];
   cleanFeet: boolean;
 }
 
@@ -42,8 +45,13 @@ export interface Cleaner {
   result(): Motion;
 }
 
+/** Keys as the clean-up knows them. */
+export function firmKeys(keys: readonly FrameKey[], strength: number): FirmKey[] {
+  return keys.map((key) => ({ frame: key.frame, strength: effectiveStrength(strength, key.strength) }));
+}
+
 /** @param frames length of the whole dance */
-export function createCleaner(frames: number, { keys, keyStrength, cleanFeet }: CleaningOptions): Cleaner {
+export function createCleaner(frames: number, { keys, cleanFeet }: CleaningOptions): Cleaner {
   const output = emptyMotion(frames);
   let state: ContactState | undefined;
   let done = 0;
@@ -55,7 +63,7 @@ export function createCleaner(frames: number, { keys, keyStrength, cleanFeet }: 
       const to = last ? frames : Math.max(done, stable - SETTLE - LOOKAHEAD);
       if (to > done) {
         const view: Motion = { ...corrected, frames: last ? frames : stable - SETTLE };
-        if (cleanFeet) state = cleanContacts(view, output, done, to, { keys, keyStrength, state });
+        if (cleanFeet) state = cleanContacts(view, output, done, to, { keys, state });
         else copyFrames(corrected, done, to, output, done);
         done = to;
       }
@@ -65,49 +73,58 @@ export function createCleaner(frames: number, { keys, keyStrength, cleanFeet }: 
 }
 
 /**
- * Finishes an uncorrected dance. The same dance, keys and strength always give the same motion: for a dance made in one go the one that
- * `generateMotion` gives for that strength.
+ * Finishes an uncorrected dance. The same dance, keys and strength always give the same motion: the one that `generateMotion` gives for
+ * that strength.
  * @param uncorrected as `GenerationHooks.onUncorrected` hands it out; left as it is
  * @param keyPoses the visitor's key poses; those outside the dance do not count
- * @param strength 0 = the network alone .. 1 = every key pose exactly
+ * @param strength 0 = the network alone .. 1 = every key pose exactly; times the strength of each key pose
  */
 export function finishDance(
-  { motion, stretches }: UncorrectedDance,
+  { motion, stretches, layers, place }: UncorrectedDance,
   keyPoses: readonly KeyPose[],
   strength: number,
   cleanFeet = true,
 ): Motion {
   const { frames, fps } = motion;
-  const keys = keysOnFrames(keyPoses, fps, frames);
+  const inside = place ? keysWithin(keyPoses, place.from, place.from + frames) : keyPoses;
+  const keys = keysOnFrames(inside, fps, frames);
   const corrected = sliceMotion(motion, 0, frames);
   correctToKeys(corrected, keys, strength);
-  const cleaner = createCleaner(frames, { keys: keys.map((key) => key.frame), keyStrength: strength, cleanFeet });
+  const cleaner = createCleaner(frames, { keys: firmKeys(keys, strength), cleanFeet });
   for (const stable of stretches) cleaner.clean(corrected, stable, false);
   cleaner.clean(corrected, frames, true);
-  return cleaner.result();
+  const whole = cleaner.result();
+  const done = (layers ?? []).reduce((below, layer) => finishLayer(below, layer, keys, strength, cleanFeet), whole);
+  return place ? heldAround(done, place.from, place.frames) : done;
 }
 
 /**
- * A range made anew inside the uncorrected form of the dance around it, whose way over the floor may be another one.
- * @param made the dance with the range [from, to) as the network gave it
- * @param previous the finished dance that the range was made for
- * @param around the uncorrected form of `previous`; left as it is
+ * Lays a range made anew onto a finished dance. Rotations and places outside the range stay as they are.
+ * @param below left as it is
+ * @param keys of the whole dance
  */
-export function joinUncorrected(
-  made: Motion,
-  previous: Motion,
-  { motion: around, stretches }: UncorrectedDance,
-  from: number,
-  to: number,
-): UncorrectedDance {
-  const motion = sliceMotion(around, 0, around.frames);
-  copyFrames(made, from, to, motion, from);
-  if (from > 0) {
-    for (const k of [0, 2]) {
-      const apart = around.root[(from - 1) * 3 + k] - previous.root[(from - 1) * 3 + k];
-      for (let t = from; t < to; t++) motion.root[t * 3 + k] += apart;
-    }
+export function finishLayer(
+  below: Motion,
+  layer: RangeLayer,
+  keys: readonly FrameKey[],
+  strength: number,
+  cleanFeet = true,
+): Motion {
+  const { from, to } = layer;
+  const made = withLayer(below, layer);
+  const inside = keys.filter((key) => key.frame >= from && key.frame < to);
+  correctToKeys(made, inside, strength, { from, to });
+  const output = sliceMotion(below, 0, below.frames);
+  if (cleanFeet) {
+    const fixedAfter = to < below.frames;
+    cleanContacts(made, output, from, to, { keys: firmKeys(inside, strength), fixedAfter });
+  } else {
+    copyFrames(made, from, to, output, from);
   }
-  joinRange(motion, around, from, to);
-  return { motion, stretches };
+  return alignSigns(output);
+}
+
+/** An uncorrected dance with its layers laid on, as the network of the next range sees it. */
+export function flattened({ motion, layers }: UncorrectedDance): Motion {
+  return (layers ?? []).reduce(withLayer, motion);
 }

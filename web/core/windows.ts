@@ -4,25 +4,23 @@
  */
 import { accentBeats } from './accent';
 import { beatPhase, type BeatPhase } from './beat-phase';
-import { cleanContacts } from './contact';
 import { correctToKeys, keysOnFrames, type FrameKey } from './correction';
-import { createCleaner, joinUncorrected, SETTLE, type UncorrectedDance } from './finish';
-import { fillerPoses, headingCurve } from './filler';
-import { fromLocalRows, headingOf, localFrameAt } from './localframe';
-import { alignSigns, copyFrames, emptyMotion, sliceMotion } from './motion';
-import { blendInto, joinRange, turned } from './motion-blend';
-import { seedMotion } from './seed';
+import { excerpt, heldAround } from './excerpt';
+import { createCleaner, finishDance, finishLayer, firmKeys, flattened, SETTLE, type UncorrectedDance } from './finish';
+import { headingCurve } from './filler';
+import { headingOf } from './localframe';
+import { copyFrames, emptyMotion, sliceMotion } from './motion';
+import { cutLayer, type RangeLayer } from './range-layer';
 import { JOINT_COUNT } from './skeleton';
 import { spec } from './spec';
 import type { BeatGrid, Features, KeyPose, Motion, SeedClip } from './types';
-import { planWindows, windowInputs, type RunWindow, type WindowSpan } from './window-plan';
+import { planWindows, type RunWindow } from './window-plan';
+import { addWindow, networkKeys, openingSeed, TAIL } from './window-run';
 
 export type { RunWindow, WindowInputs } from './window-plan';
 
 const POSE = JOINT_COUNT * 4;
 const { seedFrames } = spec.model;
-/** Frames that the network goes on past the song's end, so that the last beats have something to aim for. */
-const TAIL = spec.fps;
 
 /** What a dance is made from. */
 export interface GenerationRequest {
@@ -47,17 +45,20 @@ export interface GenerationRequest {
     /** Poses of the starting clip on beats far from any key (default true); without them the network alone fills the gaps. */
     fillers?: boolean;
   };
-  /** Frames [from, to) are made anew; the rest stays as in `previous`. */
+  /** The part of the song to dance to; before and after it the figure holds still. All other frames count in the whole song. */
+  trim?: { from: number; to: number };
+  /** Frames [from, to) are made anew; the rest stays as in the dance so far, which is given in one of its two forms, or in both. */
   range?: { from: number; to: number };
+  /** The dance so far as it is shown; without it `previousUncorrected` is finished at the key strength of `options`. */
   previous?: Motion;
-  /** `previous` as `onUncorrected` gave it; without it a range has no uncorrected form to hand out. */
+  /** The dance so far as `onUncorrected` gave it; without it a range has no uncorrected form to hand out. */
   previousUncorrected?: UncorrectedDance;
 }
 
 /** How the caller follows a generation. */
 export interface GenerationHooks {
-  /** The dance so far (frames [0, motion.frames) are final), the share that is done, and the windows run. */
-  onPartial?(motion: Motion, fraction: number, windows: number): void;
+  /** The dance so far (frames [0, motion.frames) are final; null for a range), the share that is done, and the windows run. */
+  onPartial?(motion: Motion | null, fraction: number, windows: number): void;
   /**
    * The whole dance before key poses and floor had their say, once, at the end: what `finishDance` (finish.ts) finishes for another key
    * strength without the network.
@@ -79,12 +80,43 @@ export async function generateMotion(
 ): Promise<Motion> {
   check(request);
   hooks.signal?.throwIfAborted();
-  return request.range && request.previous
-    ? generateRange(request, request.range, request.previous, runWindow, hooks)
+  if (request.trim) return generateTrimmed(request, request.trim, runWindow, hooks);
+  return request.range
+    ? generateRange(request, request.range, runWindow, hooks)
     : generateWhole(request, runWindow, hooks);
 }
 
-function check({ frames, features, range, previous, opening }: GenerationRequest): void {
+/** The trimmed part as a song of its own, put back in its place. */
+async function generateTrimmed(
+  request: GenerationRequest,
+  trim: { from: number; to: number },
+  runWindow: RunWindow,
+  hooks: GenerationHooks,
+): Promise<Motion> {
+  const { frames, range, previous, previousUncorrected } = request;
+  const { from, to } = trim;
+  if (previousUncorrected && previousUncorrected.place?.from !== from) {
+    throw new Error('The dance so far was made for another part of the song: generate it again.');
+  }
+  const inside = (frame: number) => Math.min(Math.max(from, frame), to) - from;
+  const part: GenerationRequest = {
+    ...request,
+    ...excerpt(request, from, to),
+    trim: undefined,
+    range: range && { from: inside(range.from), to: inside(range.to) },
+    previous: previous && sliceMotion(previous, from, to),
+    previousUncorrected: previousUncorrected && { ...previousUncorrected, place: undefined },
+  };
+  const motion = await generateMotion(part, runWindow, {
+    ...hooks,
+    onPartial: (made, fraction, windows) =>
+      hooks.onPartial?.(made && heldAround(made, from, from + made.frames), fraction, windows),
+    onUncorrected: (made) => hooks.onUncorrected?.({ ...made, place: { from, frames } }),
+  });
+  return heldAround(motion, from, frames);
+}
+
+function check({ frames, features, trim, range, previous, previousUncorrected, opening }: GenerationRequest): void {
   if (!Number.isInteger(frames) || frames < 1) throw new Error('There is no song to dance to: drop a song first.');
   if (features.fps !== spec.fps || features.names.length !== spec.features.names.length) {
     throw new Error('The song was analysed by another version of Posebeat: drop it again.');
@@ -92,40 +124,21 @@ function check({ frames, features, range, previous, opening }: GenerationRequest
   if (opening && opening.frames !== seedFrames) {
     throw new Error(`The opening has ${opening.frames} frames; it needs exactly ${seedFrames}.`);
   }
+  if (trim && !(trim.from >= 0 && trim.to <= frames && trim.to - trim.from >= 2)) {
+    throw new Error('The part of the song to dance to is empty or outside the song: trim it anew.');
+  }
   if (!range) return;
-  if (!previous)
+  const given = [
+    ...(previous ? [previous.frames] : []),
+    ...(previousUncorrected ? [previousUncorrected.place?.frames ?? previousUncorrected.motion.frames] : []),
+  ];
+  if (!given.length)
     throw new Error('There is no dance yet whose range could be made anew: generate the whole dance first.');
-  if (previous.frames !== frames)
+  if (given.some((length) => length !== frames))
     throw new Error('The dance and the song differ in length: generate the whole dance again.');
   if (!(range.from >= 0 && range.to <= frames && range.to - range.from >= 2)) {
     throw new Error('The range to make anew is empty or outside the song: select a longer one.');
   }
-}
-
-/** All that is fed to the network: the user's keys and the fillers, ascending. */
-function networkKeys(
-  request: GenerationRequest,
-  keys: FrameKey[],
-  from: number,
-  to: number,
-  start?: { frame: number; heading: number },
-): FrameKey[] {
-  const { seedClip: clip, otherClips: others, grid, options } = request;
-  if (options.fillers === false) return keys;
-  const heading = headingCurve(keys, start);
-  const fillers = fillerPoses(
-    { clip, others, grid, keys, from, to, variation: options.variation, seed: options.seed },
-    heading,
-  );
-  return [...keys, ...fillers].sort((a, b) => a.frame - b.frame);
-}
-
-/** The dance before frame 0: the given one as it stands, or the clip on the grid, facing where the dance begins. */
-function openingSeed(request: GenerationRequest, heading: number): Motion {
-  if (request.opening) return request.opening;
-  const seed = seedMotion(request.seedClip, request.grid, seedFrames, { startTime: -seedFrames / spec.fps });
-  const last = seedFrames - 1;
-  return turned(seed, heading - headingOf(seed.quaternions.subarray(last * POSE, last * POSE + 4)), last);
 }
 
 async function generateWhole(
@@ -162,30 +175,6 @@ async function generateWhole(
   throw new Error(`A dance of ${frames} frames with seed ${options.seed} got no windows.`);
 }
 
-/** Runs one window and blends it into the raw dance. `offset` is where frame 0 of the song lies in `raw`. */
-async function addWindow(
-  span: WindowSpan,
-  before: WindowSpan | undefined,
-  raw: Motion,
-  offset: number,
-  features: Features,
-  keys: readonly FrameKey[],
-  runWindow: RunWindow,
-): Promise<void> {
-  const start = span.start + offset;
-  const seed = sliceMotion(raw, start - seedFrames, start);
-  const frame = localFrameAt(seed, seedFrames - 1);
-  const inputs = windowInputs(span, features, seed, keys, frame);
-  const rows = await runWindow(inputs);
-  const wanted = inputs.frames * spec.model.motionSize;
-  if (rows.length !== wanted)
-    throw new Error(`The model gave ${rows.length} numbers for a window instead of ${wanted}.`);
-  const made = fromLocalRows(rows, frame);
-  const overlap = before ? before.end - span.start : 0;
-  blendInto(made, 0, raw, start, overlap);
-  copyFrames(made, overlap, made.frames, raw, start + overlap);
-}
-
 /** Finishes a dance a stretch at a time. */
 interface Finisher {
   (raw: Motion, stable: number, last: boolean): Motion;
@@ -202,7 +191,7 @@ function finisher(request: GenerationRequest, keys: FrameKey[]): Finisher {
   const uncorrected: Finisher['uncorrected'] = { motion: emptyMotion(frames), stretches: [] };
   const corrected = emptyMotion(frames);
   const phase = beatPhase(request.grid);
-  const cleaner = createCleaner(frames, { ...options, keys: keys.map((key) => key.frame) });
+  const cleaner = createCleaner(frames, { cleanFeet: options.cleanFeet, keys: firmKeys(keys, options.keyStrength) });
   const finish = (raw: Motion, stable: number, last: boolean): Motion => {
     const into = { uncorrected: uncorrected.motion, corrected };
     correctStretch(raw, into, cleaner.done, last ? frames : stable, keys, phase, options.keyStrength);
@@ -240,27 +229,48 @@ function correctStretch(
 async function generateRange(
   request: GenerationRequest,
   range: { from: number; to: number },
-  previous: Motion,
   runWindow: RunWindow,
   hooks: GenerationHooks,
 ): Promise<Motion> {
+  const { frames, options, previous, previousUncorrected } = request;
+  if (range.from === 0 && range.to === frames) return generateWhole(request, runWindow, hooks);
+  // The network sees the dance before key strength had its say: the same layer then fits every strength.
+  const below = previousUncorrected ? flattened(previousUncorrected) : previous!;
+  const layer = await generateLayer(request, range, below, runWindow, hooks);
+  const uncorrected = previousUncorrected && {
+    ...previousUncorrected,
+    layers: [...(previousUncorrected.layers ?? []), layer],
+  };
+  if (uncorrected) hooks.onUncorrected?.(uncorrected);
+  const { keyStrength, cleanFeet } = options;
+  if (!previous) return finishDance(uncorrected!, request.keyPoses, keyStrength, cleanFeet);
+  return finishLayer(previous, layer, keysOnFrames(request.keyPoses, spec.fps, frames), keyStrength, cleanFeet);
+}
+
+/** Runs the network over frames [from, to) of the dance below. */
+async function generateLayer(
+  request: GenerationRequest,
+  range: { from: number; to: number },
+  below: Motion,
+  runWindow: RunWindow,
+  hooks: GenerationHooks,
+): Promise<RangeLayer> {
   const { from, to } = range;
   const { frames, options } = request;
-  if (from === 0 && to === frames) return generateWhole(request, runWindow, hooks);
   const userKeys = keysOnFrames(request.keyPoses, spec.fps, frames).filter(
     (key) => key.frame >= from && key.frame < to,
   );
   const pin: FrameKey[] =
-    to < frames ? [{ frame: to, quaternions: previous.quaternions.slice(to * POSE, (to + 1) * POSE) }] : [];
+    to < frames ? [{ frame: to, quaternions: below.quaternions.slice(to * POSE, (to + 1) * POSE) }] : [];
   const keys = [...userKeys, ...pin];
   const total = to < frames ? to + 1 : frames + TAIL;
   const startHeading = headingOf(
-    previous.quaternions.subarray(Math.max(0, from - 1) * POSE, Math.max(0, from - 1) * POSE + 4),
+    below.quaternions.subarray(Math.max(0, from - 1) * POSE, Math.max(0, from - 1) * POSE + 4),
   );
   const opening = openingSeed(request, startHeading);
   const raw = emptyMotion(seedFrames + Math.max(total, frames));
   copyFrames(opening, 0, seedFrames, raw, 0);
-  copyFrames(previous, 0, frames, raw, seedFrames);
+  copyFrames(below, 0, frames, raw, seedFrames);
   // Near the song's start the seed would reach before it: what is missing is the opening clip.
   const all = networkKeys(request, keys, from, total, from > 0 ? { frame: from, heading: startHeading } : undefined);
   const plan = planWindows(
@@ -271,21 +281,13 @@ async function generateRange(
   for (let i = 0; i < plan.length; i++) {
     await addWindow(plan[i], i > 0 ? plan[i - 1] : undefined, raw, seedFrames, request.features, all, runWindow);
     hooks.signal?.throwIfAborted();
-    hooks.onPartial?.(previous, (plan[i].end - from) / (total - from), i + 1);
+    hooks.onPartial?.(null, (plan[i].end - from) / (total - from), i + 1);
   }
   const made = sliceMotion(raw, seedFrames, seedFrames + frames);
-  const exact = userKeys.map((key) => key.frame);
-  copyFrames(accentBeats(made, beatPhase(request.grid), exact), from, to, made, from);
-  if (request.previousUncorrected) {
-    hooks.onUncorrected?.(joinUncorrected(made, previous, request.previousUncorrected, from, to));
-  }
-  joinRange(made, previous, from, to);
-  correctToKeys(made, userKeys, options.keyStrength);
-  const output = sliceMotion(previous, 0, frames);
-  if (options.cleanFeet) {
-    cleanContacts(made, output, from, to, { keys: exact, keyStrength: options.keyStrength, fixedAfter: to < frames });
-  } else {
-    copyFrames(made, from, to, output, from);
-  }
-  return alignSigns(output);
+  const bent = accentBeats(
+    made,
+    beatPhase(request.grid),
+    userKeys.map((key) => key.frame),
+  );
+  return cutLayer(bent, below, range, options);
 }

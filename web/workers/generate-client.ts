@@ -28,8 +28,8 @@ export interface LoadOptions {
 
 /** How to follow one generation. */
 export interface GenerateHooks {
-  /** The dance so far: frames [0, motion.frames) are final. For a range it is the old dance. */
-  onPartial?: (motion: Motion, fraction: number, windows: number) => void;
+  /** The dance so far: frames [0, motion.frames) are final; null for a range, which comes only as a whole. */
+  onPartial?: (motion: Motion | null, fraction: number, windows: number) => void;
   /** Rejects the promise at once with an AbortError; the worker stops after the window it is in. */
   signal?: AbortSignal;
 }

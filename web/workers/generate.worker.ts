@@ -64,8 +64,8 @@ async function generate(request: Generate, signal: AbortSignal): Promise<void> {
       signal,
       onUncorrected: (made) => (uncorrected = made),
       onPartial: (part, fraction, done) => {
-        // Parts are copies already, so their buffers can go; a range's part is the old dance and must stay.
-        const transfer = part === request.previous ? [] : [part.root.buffer, part.quaternions.buffer];
+        // Parts are copies already, so their buffers can go.
+        const transfer = part ? [part.root.buffer, part.quaternions.buffer] : [];
         reply({ type: 'partial', job, motion: part, fraction, windows: done }, transfer);
       },
     },

@@ -43,10 +43,13 @@ export interface DanceRequest {
   /** Clips that poses are borrowed from as variation grows. */
   otherClips?: SeedClip[];
   options: GenerateOptions;
-  /** Frames [from, to) are made anew; the rest stays as in `previous`. */
+  /** The part of the song to dance to; all other frames count in the whole song. */
+  trim?: { from: number; to: number };
+  /** Frames [from, to) are made anew; the rest stays as in the dance so far. */
   range?: { from: number; to: number };
+  /** The dance so far as it is shown; without it the uncorrected form is finished anew. */
   previous?: Motion;
-  /** The uncorrected form of `previous`. */
+  /** The uncorrected form of the dance so far. */
   previousUncorrected?: UncorrectedDance;
 }
 
@@ -61,8 +64,8 @@ export type GenerateRequest =
 export type GenerateReply =
   | { type: 'loading'; job: number; fraction: number; bytes: number; totalBytes: number; cached: boolean }
   | { type: 'loaded'; job: number; backend: Backend; threads: number; model: string; reason: string }
-  /** The dance so far: frames [0, motion.frames) can be played; earlier frames may be repeated in later messages. */
-  | { type: 'partial'; job: number; motion: Motion; fraction: number; windows: number }
+  /** The dance so far: frames [0, motion.frames) can be played; a range comes only as a whole, so until then there is none. */
+  | { type: 'partial'; job: number; motion: Motion | null; fraction: number; windows: number }
   | {
       type: 'result';
       job: number;

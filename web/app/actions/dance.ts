@@ -128,7 +128,7 @@ export function danceActions(context: Context, reporter: Reporter) {
         },
         (motion, fraction, windows) => {
           if (signal.aborted) return;
-          state.partial.value = motion;
+          if (motion) state.partial.value = motion;
           state.generation.value = { status: 'running', fraction, windows };
         },
         signal,
