@@ -19,7 +19,7 @@ export interface Ghost {
  * `fill` and `rim` are opacities where the body faces the eye and at its outline.
  */
 const LOOKS = {
-  before: { colour: new Color('#c9985a'), fill: 0.06, rim: 0.62, stripes: 1 },
+  before: { colour: new Color('#c9985a'), fill: 0.1, rim: 0.66, stripes: 1 },
   after: { colour: new Color(ACCENT), fill: 0.2, rim: 0.85, stripes: 0 },
 } as const;
 

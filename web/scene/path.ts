@@ -165,7 +165,7 @@ void main() {
   float frame = floor(spot.w);
   vMark = (spot.w - frame) * 4.0;
   vStrength = strength(frame);
-  vSize = (vMark > 2.5 ? 15.0 : vMark > 1.5 ? 10.0 : 6.5) * ratio;
+  vSize = (vMark > 2.5 ? 18.0 : vMark > 1.5 ? 10.0 : 6.5) * ratio;
   gl_PointSize = vSize;
   gl_Position = projectionMatrix * viewMatrix * vec4(spot.xyz, 1.0);
 }`;
@@ -176,7 +176,9 @@ varying float vStrength;
 varying float vMark;
 varying float vSize;
 void main() {
-  float r = length(gl_PointCoord - 0.5) * vSize;
+  // Key poses are diamonds, as on the timeline; the editor's joints are discs of the same colour.
+  vec2 at = abs(gl_PointCoord - 0.5) * vSize;
+  float r = vMark > 2.5 ? (at.x + at.y) * 0.9 : length(at);
   float edge = vSize * 0.5 - 1.0;
   float disc = 1.0 - smoothstep(edge - 1.0, edge + 0.5, r);
   float core = 1.0 - smoothstep(edge * 0.64 - 0.7, edge * 0.64 + 0.7, r);
