@@ -7,6 +7,8 @@ interface Started {
   offset: number;
   loop: [number, number] | null;
   rate: number;
+  /** Seconds of the song after which the sound ends by itself. */
+  length?: number;
 }
 
 /** An AudioContext whose hardware runs at `1 + skew` times the page's clock, in steps of a render buffer, `latency` behind. */
@@ -55,10 +57,11 @@ class FakeDevice {
           loopEnd: 0,
           buffer: null,
           connect: (next: unknown) => next,
-          start: (when: number, offset: number) =>
+          start: (when: number, offset: number, length?: number) =>
             device.started.push({
               when,
               offset,
+              length,
               loop: node.loop ? [node.loopStart, node.loopEnd] : null,
               rate: node.playbackRate.value,
             }),
@@ -243,6 +246,57 @@ describe('Player', () => {
     expect(player.playing).toBe(false);
     player.play();
     expect(player.time()).toBe(0);
+  });
+
+  it('plays, seeks, loops and ends inside its bounds', () => {
+    const device = new FakeDevice();
+    const player = playing(device, 20);
+    player.setBounds({ start: 4, end: 8 });
+    expect(player.time()).toBe(4);
+    player.seek(1);
+    expect(player.time()).toBe(4);
+    player.seek(15);
+    expect(player.time()).toBe(8);
+    player.play();
+    expect(player.time()).toBe(4);
+    expect(device.started.at(-1)!.length).toBe(4);
+    device.now += 5000;
+    expect(player.time()).toBe(8);
+    player.tick();
+    expect(player.playing).toBe(false);
+    player.setLoop({ start: 6, end: 12 });
+    expect(player.loop).toEqual({ start: 6, end: 8 });
+    player.setBounds({ start: 10, end: 14 });
+    expect(player.loop).toBeNull();
+    expect(player.time()).toBe(10);
+    player.setBounds(null);
+    player.seek(19);
+    expect(player.time()).toBe(19);
+  });
+
+  it('goes on without a jump when its bounds change around the playhead, and begins anew when they leave it', () => {
+    const device = new FakeDevice();
+    const player = playing(device, 20);
+    player.seek(5);
+    player.play();
+    device.now += 1000;
+    const before = player.time();
+    player.setBounds({ start: 2, end: 9 });
+    expect(player.time()).toBeCloseTo(before, 2);
+    expect(device.started.at(-1)!.length).toBeCloseTo(9 - before, 0);
+    player.setBounds({ start: 12, end: 15 });
+    expect(player.time()).toBe(12);
+    expect(player.playing).toBe(true);
+  });
+
+  it('takes bounds that hold the whole song for none, and forgets them with the song', () => {
+    const player = playing(new FakeDevice(), 20);
+    player.setBounds({ start: -1, end: 30 });
+    expect(player.bounds).toBeNull();
+    player.setBounds({ start: 3, end: 30 });
+    expect(player.bounds).toEqual({ start: 3, end: 20 });
+    player.load(10, buffer(10));
+    expect(player.bounds).toBeNull();
   });
 
   it('keeps speed in its range and ignores loops too short to hear', () => {

@@ -120,6 +120,14 @@ export interface PoseDraft {
   canRedo: boolean;
 }
 
+/** Taps on the beat so far. */
+export interface Tapping {
+  /** Song times, seconds, in the order tapped. */
+  times: number[];
+  /** Beats per minute, as soon as the taps tell. */
+  tempo: number | null;
+}
+
 /** What the timeline shows. */
 export interface TimelineView {
   /** Seconds at the left edge. */
@@ -208,6 +216,12 @@ export function createState() {
     variationAmount: signal(0.4),
     /** A short word on what just happened to the pose, shown over the stage. */
     poseWord: signal(''),
+    /** Key poses and ranges go along when the beats are changed. */
+    ripple: signal(true),
+    /** Tap tempo under way, or null. */
+    tapping: signal<Tapping | null>(null),
+    /** A click on every beat. */
+    metronome: signal(false),
     /** What key poses snap to. */
     snap: signal<Snap>('beat'),
     /** The neighbouring key poses as ghosts beside the figure. */

@@ -3,6 +3,7 @@ import { batch, effect } from '@preact/signals';
 import { createDocument, type ProjectDocument } from '../core/document';
 import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
+import { beatActions } from './actions/beats';
 import { danceActions } from './actions/dance';
 import { keyActions } from './actions/keys';
 import { overlayActions } from './actions/overlays';
@@ -12,6 +13,8 @@ import { pictureActions } from './actions/picture';
 import { projectActions } from './actions/project';
 import { songActions } from './actions/song';
 import { viewActions } from './actions/view';
+import { tapActions } from './actions/tap';
+import { trimActions } from './actions/trim';
 import type { Context, Services } from './context';
 import { tuningActions } from './actions/tuning';
 import { poseMath } from './pose-math';
@@ -66,6 +69,7 @@ export function createStore(services: Services, reporter: Reporter) {
 
   const dance = danceActions(context, reporter);
   const tuning = tuningActions(context, reporter, dance);
+  const beats = beatActions(context, dance.measureShown);
   const keys = keyActions(context);
   const view = viewActions(context);
   const playback = playbackActions(context, view.revealTime);
@@ -150,6 +154,9 @@ export function createStore(services: Services, reporter: Reporter) {
     ...tuning,
     ...pictureActions(context, dance),
     ...keys,
+    ...beats,
+    ...tapActions(context, beats),
+    ...trimActions(context),
     ...playback,
     ...pose,
     ...songs,

@@ -1,19 +1,16 @@
 /** The clock of the house: what `time()` says is what is heard, and everything that moves asks it. */
 import { HeardClock } from './heard-clock';
+import { positionAt, type LoopRange, type Segment } from './segment';
 
-/** A stretch of the song, seconds. */
-export interface LoopRange {
-  start: number;
-  end: number;
-}
+export type { LoopRange } from './segment';
 
-/** From `from` on (seconds of its clock) the song runs from `position` at `rate`. */
-interface Segment {
-  clock: 'audio' | 'timer';
-  from: number;
-  position: number;
-  rate: number;
-  loop: LoopRange | null;
+/** What other sounds need to go with the song. */
+export interface Score {
+  context: AudioContext;
+  /** Volume and mute apply to what is connected here. */
+  output: AudioNode;
+  /** How the song lies on the context's clock from now on. */
+  segment: Segment;
 }
 
 /** Makes an AudioContext; tests give their own. */
@@ -49,6 +46,7 @@ export class Player {
   #segments: Segment[] = [];
   #speed = 1;
   #loop: LoopRange | null = null;
+  #bounds: LoopRange | null = null;
   #volume = 0.9;
   #muted = false;
 
@@ -77,6 +75,16 @@ export class Player {
   get loop(): LoopRange | null {
     return this.#loop;
   }
+  /** The part of the song that is played at all, or null. */
+  get bounds(): LoopRange | null {
+    return this.#bounds;
+  }
+  /** How the song lies on the sound device's clock; null while it is not heard. */
+  get score(): Score | null {
+    const segment = this.#segments.at(-1);
+    if (!this.#playing || !this.#audible() || segment?.clock !== 'audio') return null;
+    return { context: this.#context!, output: this.#master!, segment };
+  }
   /** 0..1. */
   get volume(): number {
     return this.#volume;
@@ -103,6 +111,7 @@ export class Player {
     this.#segments = [];
     this.#position = 0;
     this.#loop = null;
+    this.#bounds = null;
     this.#duration = duration;
     this.#buffer = buffer;
     this.#changed();
@@ -119,8 +128,8 @@ export class Player {
   /** Starts at the current position; from the end it starts again. */
   play(): void {
     if (this.#playing || this.#duration <= 0) return;
-    const start = this.#loop?.start ?? 0;
-    const end = this.#loop?.end ?? this.#duration;
+    const start = this.#loop?.start ?? this.#first;
+    const end = this.#loop?.end ?? this.#last;
     if (this.#position >= end - 1e-3) this.#position = start;
     this.#playing = true;
     this.#startAt(this.#position);
@@ -137,9 +146,9 @@ export class Player {
     this.#changed();
   }
 
-  /** Goes to a time in seconds; outside the song it goes to the nearest end. */
+  /** Goes to a time in seconds; outside the song, or the part of it that is played, it goes to the nearest end. */
   seek(time: number): void {
-    const target = Math.min(Math.max(Number.isFinite(time) ? time : 0, 0), this.#duration);
+    const target = Math.min(Math.max(Number.isFinite(time) ? time : 0, this.#first), this.#last);
     this.#position = this.#loop && this.#playing && target >= this.#loop.end ? this.#loop.start : target;
     if (this.#playing) this.#startAt(this.#position);
     this.#changed();
@@ -148,10 +157,8 @@ export class Player {
   /** Repeats a stretch, or with null plays through. */
   setLoop(range: LoopRange | null): void {
     if (range) {
-      const start = Math.max(0, Math.min(range.start, range.end));
-      const end = Math.min(this.#duration, Math.max(range.start, range.end));
-      if (end - start < MIN_LOOP) return;
-      range = { start, end };
+      range = this.#inside(range);
+      if (!range) return;
     }
     const before = this.#loop;
     if (before?.start === range?.start && before?.end === range?.end) return;
@@ -160,6 +167,21 @@ export class Player {
       if (range && this.time() >= range.end) this.#startAt(range.start);
       else this.#continue();
     }
+    this.#changed();
+  }
+
+  /** Plays only a part of the song, or with null all of it; a loop that reaches beyond is cut, one outside it ends. */
+  setBounds(range: LoopRange | null): void {
+    const before = this.#bounds;
+    const position = this.time();
+    this.#bounds = null;
+    const next = range && this.#inside(range);
+    this.#bounds = next && (next.start > 0 || next.end < this.#duration) ? next : null;
+    if (before?.start === this.#bounds?.start && before?.end === this.#bounds?.end) return;
+    if (this.#loop) this.#loop = this.#inside(this.#loop);
+    if (!this.#playing) this.#position = Math.min(Math.max(position, this.#first), this.#last);
+    else if (position < this.#first || position >= this.#last) this.#startAt(this.#loop?.start ?? this.#first);
+    else this.#continue();
     this.#changed();
   }
 
@@ -200,9 +222,9 @@ export class Player {
     return this.#positionOf(this.#activeSegment());
   }
 
-  /** Stops at the end of the song. Call it once a frame. */
+  /** Stops at the end of the song, or of its part. Call it once a frame. */
   tick(): void {
-    if (this.#playing && !this.#loop && this.time() >= this.#duration) this.pause();
+    if (this.#playing && !this.#loop && this.time() >= this.#last) this.pause();
   }
 
   /** Closes the sound device. */
@@ -211,6 +233,21 @@ export class Player {
     this.#listeners.clear();
     void this.#context?.close();
     this.#context = null;
+  }
+
+  get #first(): number {
+    return this.#bounds?.start ?? 0;
+  }
+
+  get #last(): number {
+    return Math.min(this.#bounds?.end ?? this.#duration, this.#duration);
+  }
+
+  /** A range within what is played; null when too little of it is left to hear. */
+  #inside(range: LoopRange): LoopRange | null {
+    const start = Math.max(this.#first, Math.min(range.start, range.end));
+    const end = Math.min(this.#last, Math.max(range.start, range.end));
+    return end - start < MIN_LOOP ? null : { start, end };
   }
 
   #activeSegment(): Segment {
@@ -230,8 +267,7 @@ export class Player {
   }
 
   #positionOf(segment: Segment, at = this.#clockTime(segment.clock)): number {
-    const position = segment.position + Math.max(0, at - segment.from) * segment.rate;
-    return Math.min(wrap(position, segment.position, segment.loop), this.#duration);
+    return positionAt(segment, at);
   }
 
   #audible(): boolean {
@@ -283,7 +319,7 @@ export class Player {
   }
 
   #timerSegment(position: number): Segment {
-    return { clock: 'timer', from: this.#now() / 1000, position, rate: this.#speed, loop: this.#loop };
+    return this.#segment('timer', this.#now() / 1000, position);
   }
 
   #startSource(from: number, position: number): Segment {
@@ -300,9 +336,23 @@ export class Player {
     fade.gain.setValueAtTime(0, from);
     fade.gain.linearRampToValueAtTime(1, from + FADE);
     node.connect(fade).connect(this.#master!);
-    node.start(from, Math.min(position, Math.max(0, this.#duration - 1e-3)));
+    const offset = Math.min(position, Math.max(0, this.#duration - 1e-3));
+    if (this.#bounds && !this.#loop) {
+      // The sound ends by itself, also where the page is in the background and nothing ticks.
+      const length = Math.max(0, this.#last - offset);
+      const end = from + length / this.#speed;
+      fade.gain.setValueAtTime(1, Math.max(from + FADE, end - FADE));
+      fade.gain.linearRampToValueAtTime(0, Math.max(from + FADE, end));
+      node.start(from, offset, length);
+    } else {
+      node.start(from, offset);
+    }
     this.#source = { node, fade };
-    return { clock: 'audio', from, position, rate: this.#speed, loop: this.#loop };
+    return this.#segment('audio', from, position);
+  }
+
+  #segment(clock: Segment['clock'], from: number, position: number): Segment {
+    return { clock, from, position, rate: this.#speed, loop: this.#loop, end: this.#last };
   }
 
   #stopSource(at = this.#context?.currentTime ?? 0): void {
@@ -347,10 +397,4 @@ export class Player {
   #changed(): void {
     for (const listener of this.#listeners) listener();
   }
-}
-
-/** Position inside a loop that was entered from `entry`: past the loop's end it goes on at its start. */
-function wrap(position: number, entry: number, loop: LoopRange | null): number {
-  if (!loop || entry >= loop.end || position < loop.end) return position;
-  return loop.start + ((position - loop.start) % (loop.end - loop.start));
 }

@@ -7,8 +7,9 @@ export interface Shortcut {
   /** `Mod` is Ctrl, or Cmd on a Mac. A printable key stands for itself, whatever Shift it needs. */
   keys: readonly string[];
   label: string;
-  group: 'Play' | 'Key poses' | 'Pose editor' | 'View' | 'Project';
-  run(store: Store): void;
+  group: 'Play' | 'Beats' | 'Key poses' | 'Pose editor' | 'View' | 'Project';
+  /** The event tells when the key went down. */
+  run(store: Store, event: KeyboardEvent): void;
   /** Where it is given and says no, the keys are somebody else's. */
   when?(store: Store): boolean;
   /** Works while a text field has the focus. */
@@ -32,6 +33,50 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { id: 'key-back', keys: ['<'], label: 'Previous key pose', group: 'Play', run: (store) => store.stepKey(-1) },
   { id: 'key-on', keys: ['>'], label: 'Next key pose', group: 'Play', run: (store) => store.stepKey(1) },
   { id: 'loop', keys: ['L'], label: 'Loop on or off', group: 'Play', run: (store) => store.toggleLoop() },
+  {
+    id: 'tap',
+    keys: ['T'],
+    label: 'Tap the tempo along with the song',
+    group: 'Beats',
+    run: (store, event) => {
+      if (!event.repeat) store.tapTempo(event.timeStamp);
+    },
+  },
+  {
+    id: 'beats-earlier',
+    keys: ['['],
+    label: 'All beats 10 ms earlier',
+    group: 'Beats',
+    run: (store) => store.shiftBeats(-0.01),
+  },
+  {
+    id: 'beats-later',
+    keys: [']'],
+    label: 'All beats 10 ms later',
+    group: 'Beats',
+    run: (store) => store.shiftBeats(0.01),
+  },
+  {
+    id: 'beats-frame-earlier',
+    keys: ['{'],
+    label: 'All beats one frame earlier',
+    group: 'Beats',
+    run: (store) => store.shiftBeats(-1 / 30),
+  },
+  {
+    id: 'beats-frame-later',
+    keys: ['}'],
+    label: 'All beats one frame later',
+    group: 'Beats',
+    run: (store) => store.shiftBeats(1 / 30),
+  },
+  {
+    id: 'metronome',
+    keys: ['K'],
+    label: 'A click on every beat',
+    group: 'Beats',
+    run: (store) => store.toggleMetronome(),
+  },
   {
     id: 'add',
     keys: ['Enter'],
@@ -213,7 +258,8 @@ export const SHORTCUTS: readonly Shortcut[] = [
     group: 'View',
     everywhere: true,
     run: (store) => {
-      if (store.state.help.value) store.toggleHelp(false);
+      if (store.state.tapping.value) store.cancelTaps();
+      else if (store.state.help.value) store.toggleHelp(false);
       else if (store.cancelBlend()) return;
       else if (store.state.draft.value) store.closeDraft();
       else store.selectKey(null);
@@ -269,7 +315,7 @@ export function bindShortcuts(store: Store, target: Window): () => void {
       if (!shortcut.keys.some((combo) => matches(event, combo))) continue;
       if (shortcut.when && !shortcut.when(store)) continue;
       event.preventDefault();
-      shortcut.run(store);
+      shortcut.run(store, event);
       return;
     }
   };
