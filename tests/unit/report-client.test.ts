@@ -27,8 +27,10 @@ describe('the client of the report worker', () => {
     const [first, second] = [dance(), dance()];
     void reporter.finish(first, wish(0.5)).catch(() => undefined);
     void reporter.finish({ ...first, motion: emptyMotion(3) }, wish(0.4)).catch(() => undefined);
+    const softer = { ...first, keyPoses: [{ id: 'k1', time: 1, rotations: [], strength: 0.5 }] };
+    void reporter.finish(softer, wish(0.4)).catch(() => undefined);
     void reporter.finish(second, wish(0.3)).catch(() => undefined);
-    expect(worker.types()).toEqual(['hold', 'finish 1', 'finish 2', 'hold', 'finish 3']);
+    expect(worker.types()).toEqual(['hold', 'finish 1', 'finish 2', 'keys', 'finish 3', 'hold', 'finish 4']);
   });
 
   it('hands on drafts and the result; what was dropped rejects', async () => {

@@ -1,8 +1,10 @@
 import { describe, expect, it } from 'vitest';
 import { draftAround, ReportDesk } from '../../web/app/report-desk';
 import type { ReportReply } from '../../web/app/report-protocol';
+import { heldAround } from '../../web/core/excerpt';
 import { finishDance, type UncorrectedDance } from '../../web/core/finish';
 import { consistencyError } from '../../web/core/metrics';
+import { sliceMotion } from '../../web/core/motion';
 import type { Motion } from '../../web/core/types';
 import { key, poseWith, swingingMotion } from './dance';
 
@@ -46,6 +48,42 @@ describe('the report desk', () => {
     expect(done.report.consistencyPerKey.map(({ id }) => id)).toEqual(['k2', 'k5', 'k15']);
   });
 
+  it('finishes with other strengths of the key poses when it is told', async () => {
+    const { desk: made, replies, step } = desk();
+    const own = keyPoses.map((pose, i) => ({ ...pose, strength: [0, 0.5, 1][i] }));
+    made.handle({ type: 'keys', keyPoses: own });
+    made.handle({ type: 'finish', job: 1, strength: 0.8, grid: null });
+    await step();
+    const done = replies[0] as Extract<ReportReply, { type: 'finished' }>;
+    expect(done.motion.quaternions).toEqual(finishDance(dance, own, 0.8).quaternions);
+    const [free, half, firm] = done.report.consistencyPerKey.map(({ error }) => error);
+    expect(free).toBeGreaterThan(half);
+    expect(half).toBeGreaterThan(firm);
+  });
+
+  it('measures the danced part of a trimmed song alone, in the song’s own time', async () => {
+    const { desk: made, replies, step } = desk();
+    const part = { from: 120, to: 300 };
+    const motion = heldAround(sliceMotion(finishDance(dance, keyPoses, 1), part.from, part.to), part.from, 600);
+    const beats = Array.from({ length: 40 }, (_, i) => i / 2);
+    const grid = { tempo: 120, beatsPerBar: 4 as const, beats, downbeats: [0] };
+    made.handle({ type: 'measure', job: 1, motion, keyPoses, grid, part });
+    made.handle({ type: 'measure', job: 2, motion: sliceMotion(motion, 120, 300), keyPoses: [], grid, part: null });
+    await step();
+    await step();
+    const [whole, alone] = replies.map((reply) => (reply as Extract<ReportReply, { type: 'report' }>).report);
+    expect(whole.consistencyPerKey.map(({ id, time }) => [id, time])).toEqual([['k5', 5]]);
+    expect(whole.consistencyError).toBeLessThan(1e-9);
+    expect(whole.jerk).toBe(alone.jerk);
+    expect(whole.speed).toHaveLength(599);
+    expect(whole.speed[50]).toBe(0);
+    expect(whole.longestFreeze).toBe(alone.longestFreeze);
+    // Beats lie half a second apart, and the part begins on one: beat by beat they are the same.
+    expect(whole.beatHitRate).toEqual(alone.beatHitRate);
+    expect(Math.min(...whole.motionBeats)).toBeGreaterThanOrEqual(4);
+    expect(whole.motionBeats).toEqual(alone.motionBeats.map((beat) => beat + 4));
+  });
+
   it('drops an older wish for a newer one', async () => {
     const { desk: made, step, types } = desk();
     made.handle({ type: 'finish', job: 1, strength: 0.5, grid: null, near: 150 });
@@ -59,7 +97,7 @@ describe('the report desk', () => {
   it('plots when nothing else is to do, point by point, and can be stopped', async () => {
     const { desk: made, replies, step, types } = desk();
     made.handle({ type: 'plot', job: 1, strengths: [1, 0, 0.5] });
-    made.handle({ type: 'measure', job: 2, motion: dance.motion, keyPoses, grid: null });
+    made.handle({ type: 'measure', job: 2, motion: dance.motion, keyPoses, grid: null, part: null });
     await step();
     await step();
     expect(types()).toEqual(['report 2', 'point 1']);

@@ -1,4 +1,6 @@
 import { describe, expect, it, vi } from 'vitest';
+import { excerpt } from '../../web/core/excerpt';
+import { finishDance, type UncorrectedDance } from '../../web/core/finish';
 import { consistencyError, footSkate, jerkPerFrame } from '../../web/core/metrics';
 import { sliceMotion } from '../../web/core/motion';
 import { spec } from '../../web/core/spec';
@@ -141,6 +143,52 @@ describe('a generated dance', () => {
     const range = { from: 10, to: 20 };
     await expect(generateMotion(danceRequest(4, { range }), slerpNetwork)).rejects.toThrow('generate the whole dance');
     await expect(generateMotion(danceRequest(4), async () => new Float32Array(3))).rejects.toThrow('3 numbers');
+  });
+});
+
+describe('a part of the song', () => {
+  const trim = { from: 123, to: 437 };
+  it('is danced as a song of its own, with stillness around it, and shows itself while it is made', async () => {
+    const keys = [key(2, arms), key(6.8, turned), key(437 / 30, arms), key(18, turned)];
+    const parts: Motion[] = [];
+    let uncorrected: UncorrectedDance | undefined;
+    const request = danceRequest(20, { keyPoses: keys, trim });
+    const motion = await generateMotion(request, slerpNetwork, {
+      onPartial: (part) => parts.push(part!),
+      onUncorrected: (made) => (uncorrected = made),
+    });
+    expect(motion.frames).toBe(600);
+    for (const t of [0, 60, 122]) same(sliceMotion(motion, t, t + 1), sliceMotion(motion, 123, 124));
+    for (const t of [437, 599]) same(sliceMotion(motion, t, t + 1), sliceMotion(motion, 436, 437));
+    expect(sliceMotion(motion, 200, 201).quaternions).not.toEqual(sliceMotion(motion, 123, 124).quaternions);
+    expect(consistencyError(motion, [keys[1]])).toBeLessThan(1e-6);
+    // A pose on the very end of the part is its last one.
+    expect(consistencyError(motion, [{ ...keys[2], time: 436 / 30 }])).toBeLessThan(1e-6);
+    const alone = await generateMotion({ ...request, ...excerpt(request, 123, 437), trim: undefined }, slerpNetwork);
+    same(sliceMotion(motion, 123, 437), alone);
+    expect(parts.length).toBeGreaterThan(0);
+    for (const part of parts) same(part, sliceMotion(motion, 0, part.frames));
+    same(finishDance(uncorrected!, keys, 1), motion);
+    const all = await generateMotion(danceRequest(20, { keyPoses: keys, trim: { from: 0, to: 600 } }), slerpNetwork);
+    same(all, await generateMotion(danceRequest(20, { keyPoses: keys }), slerpNetwork));
+  });
+
+  it('has ranges made anew in it, clipped to it', async () => {
+    let uncorrected: UncorrectedDance | undefined;
+    const hooks = { onUncorrected: (made: UncorrectedDance) => (uncorrected = made) };
+    const before = await generateMotion(danceRequest(20, { keyPoses, trim }), slerpNetwork, hooks);
+    const range = { from: 400, to: 600 };
+    const options = { keyStrength: 1, variation: 1, seed: 9, cleanFeet: true };
+    const again = { keyPoses, trim, range, previousUncorrected: uncorrected, options };
+    const motion = await generateMotion(danceRequest(20, again), slerpNetwork, hooks);
+    same(sliceMotion(motion, 0, 400), sliceMotion(before, 0, 400));
+    expect(sliceMotion(motion, 420, 437).quaternions).not.toEqual(sliceMotion(before, 420, 437).quaternions);
+    same(sliceMotion(motion, 599, 600), sliceMotion(motion, 436, 437));
+    same(finishDance(uncorrected!, keyPoses, 1), motion);
+    const elsewhere = { ...again, trim: { from: 100, to: 437 }, previousUncorrected: uncorrected };
+    await expect(generateMotion(danceRequest(20, elsewhere), slerpNetwork)).rejects.toThrow('another part of the song');
+    const empty = { keyPoses, trim: { from: 9, to: 9 } };
+    await expect(generateMotion(danceRequest(20, empty), slerpNetwork)).rejects.toThrow('trim it anew');
   });
 });
 

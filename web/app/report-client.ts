@@ -1,4 +1,5 @@
 /** The page's side of the report worker. */
+import type { FrameRange } from '../core/excerpt';
 import type { UncorrectedDance } from '../core/finish';
 import type { TradeOffPoint } from '../core/report-curves';
 import type { BeatGrid, KeyPose, Motion } from '../core/types';
@@ -25,8 +26,13 @@ export interface FinishWish {
 
 /** Measures and finishes dances off the main thread. */
 export interface Reporter {
-  /** Measures a dance; the motion is copied. */
-  measure(motion: Motion, keyPoses: readonly KeyPose[], grid: BeatGrid | null): Promise<DanceReport>;
+  /** Measures a dance, or the part that is danced of a trimmed song; the motion is copied. */
+  measure(
+    motion: Motion,
+    keyPoses: readonly KeyPose[],
+    grid: BeatGrid | null,
+    part?: FrameRange | null,
+  ): Promise<DanceReport>;
   /** Finishes a dance at a key strength; a newer wish rejects an older one with an AbortError. */
   finish(dance: TunableDance, wish: FinishWish): Promise<{ motion: Motion; report: DanceReport }>;
   /** Plots consistency against smoothness; rejects with an AbortError when the signal fires or a newer plot or dance comes. */
@@ -48,6 +54,7 @@ export function createReporter(createWorker: () => Worker = () => new ReportWork
   let worker: Worker | null = null;
   let jobs = 0;
   let held: UncorrectedDance | null = null;
+  let heldKeys: readonly KeyPose[] = [];
   const waiting = new Map<number, Waiting>();
 
   const stop = (error: Error) => {
@@ -99,15 +106,16 @@ export function createReporter(createWorker: () => Worker = () => new ReportWork
     });
   };
   const hold = ({ uncorrected, motion, keyPoses }: TunableDance) => {
-    if (held === uncorrected) return;
-    send({ type: 'hold', dance: uncorrected, motion, keyPoses });
+    if (held !== uncorrected) send({ type: 'hold', dance: uncorrected, motion, keyPoses });
+    else if (heldKeys !== keyPoses) send({ type: 'keys', keyPoses });
     held = uncorrected;
+    heldKeys = keyPoses;
   };
 
   return {
-    measure: (motion, keyPoses, grid) =>
+    measure: (motion, keyPoses, grid, part = null) =>
       ask(
-        (job) => ({ type: 'measure', job, motion, keyPoses, grid }),
+        (job) => ({ type: 'measure', job, motion, keyPoses, grid, part }),
         (reply) => (reply.type === 'report' ? { result: reply.report } : null),
       ),
     finish(dance, { strength, grid, near, onDraft }) {

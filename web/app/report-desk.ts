@@ -3,7 +3,7 @@
  * numbers, numbers before the plot; of drafts and plots only the newest counts.
  */
 import { keysWithin } from '../core/excerpt';
-import { finishDance, flattened, type UncorrectedDance } from '../core/finish';
+import { finishDance, flattened, partOf, type UncorrectedDance } from '../core/finish';
 import { copyFrames, sliceMotion } from '../core/motion';
 import { tradeOffPoint } from '../core/report-curves';
 import type { KeyPose, Motion } from '../core/types';
@@ -42,6 +42,9 @@ export class ReportDesk {
     else if (request.type === 'hold') {
       this.held = { dance: request.dance, shown: request.motion, keyPoses: request.keyPoses };
       this.dropFinish();
+      this.dropPlot();
+    } else if (request.type === 'keys') {
+      if (this.held) this.held.keyPoses = request.keyPoses;
       this.dropPlot();
     } else if (request.type === 'finish') {
       this.dropFinish();
@@ -102,8 +105,8 @@ export class ReportDesk {
     }
   }
 
-  private measure({ job, motion, keyPoses, grid }: Measure): number {
-    const report = measureDance(motion, keyPoses, grid);
+  private measure({ job, motion, keyPoses, grid, part }: Measure): number {
+    const report = measureDance(motion, keyPoses, grid, part);
     this.tools.reply({ type: 'report', job, report }, [report.speed.buffer]);
     return 0;
   }
@@ -121,7 +124,7 @@ export class ReportDesk {
     this.finish = null;
     const motion = finishDance(held.dance, held.keyPoses, strength);
     held.shown = sliceMotion(motion, 0, motion.frames);
-    const report = measureDance(motion, held.keyPoses, grid);
+    const report = measureDance(motion, held.keyPoses, grid, partOf(held.dance));
     const transfer = [motion.root.buffer, motion.quaternions.buffer, report.speed.buffer];
     this.tools.reply({ type: 'finished', job, motion, report }, transfer);
     return 0;

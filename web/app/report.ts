@@ -10,6 +10,7 @@ import {
 } from '../core/metrics';
 import { beatConsistency, longestFreeze } from '../core/dance-metrics';
 import { consistencyPerKey, type KeyError } from '../core/report-curves';
+import { dancedPart, type FrameRange } from '../core/excerpt';
 import type { BeatGrid, KeyPose, Motion } from '../core/types';
 
 /** Measures of a dance; see core/metrics for each definition. */
@@ -38,22 +39,33 @@ export interface DanceReport {
   motionBeats: number[];
 }
 
-/** Measures a dance. Takes some 100 ms for a long one, so the page asks the report worker. */
-export function measureDance(motion: Motion, keyPoses: readonly KeyPose[], grid: BeatGrid | null): DanceReport {
+/**
+ * Measures a dance. Takes some 100 ms for a long one, so the page asks the report worker.
+ * @param part what is danced of a trimmed song: only this is measured, yet all times and the speed are those of the whole song
+ */
+export function measureDance(
+  whole: Motion,
+  allKeys: readonly KeyPose[],
+  grid: BeatGrid | null,
+  part: FrameRange | null = null,
+): DanceReport {
+  const { motion, keyPoses } = dancedPart(whole, allKeys, part);
+  const start = (part?.from ?? 0) / motion.fps;
   const end = motion.frames / motion.fps;
-  const beats = (grid?.beats ?? []).filter((beat) => beat < end);
+  const beats = (grid?.beats ?? []).map((beat) => beat - start).filter((beat) => beat >= 0 && beat < end);
   const speed = jointSpeed(motion);
+  const times = new Map(allKeys.map((key) => [key.id, key.time]));
   return {
     consistencyError: consistencyError(motion, keyPoses),
-    consistencyPerKey: consistencyPerKey(motion, keyPoses),
+    consistencyPerKey: consistencyPerKey(motion, keyPoses).map((each) => ({ ...each, time: times.get(each.id)! })),
     smoothness: smoothness(motion),
     jerk: meanJerk(motion),
     beatHitRate: [1, 2, 3, 4, 5].map((delta) => beatHitRate(motion, beats, delta)),
     beatConsistency: beatConsistency(motion, beats),
     longestFreeze: longestFreeze(motion),
     footSkate: footSkate(motion),
-    speed,
+    speed: part ? jointSpeed(whole) : speed,
     meanSpeed: speed.length ? speed.reduce((sum, value) => sum + value, 0) / speed.length : NaN,
-    motionBeats: motionBeats(motion),
+    motionBeats: motionBeats(motion).map((beat) => beat + start),
   };
 }

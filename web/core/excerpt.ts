@@ -45,6 +45,22 @@ export function keysWithin(keyPoses: readonly KeyPose[], from: number, to: numbe
   });
 }
 
+/** Frames [from, to). */
+export interface FrameRange {
+  from: number;
+  to: number;
+}
+
+/** The danced part of a dance, without the stillness around it, and its key poses counted from there; all of it without a part. */
+export function dancedPart(
+  motion: Motion,
+  keyPoses: readonly KeyPose[],
+  part: FrameRange | null | undefined,
+): { motion: Motion; keyPoses: readonly KeyPose[] } {
+  if (!part) return { motion, keyPoses };
+  return { motion: sliceMotion(motion, part.from, part.to), keyPoses: keysWithin(keyPoses, part.from, part.to) };
+}
+
 /**
  * A dance to a stretch of a song as a dance to the song: before and after it the figure holds its first and last pose.
  * @param part begins on frame `from`

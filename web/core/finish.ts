@@ -4,7 +4,7 @@
  */
 import { cleanContacts, LOOKAHEAD, type ContactState, type FirmKey } from './contact';
 import { correctToKeys, effectiveStrength, keysOnFrames, type FrameKey } from './correction';
-import { heldAround, keysWithin } from './excerpt';
+import { heldAround, keysWithin, type FrameRange } from './excerpt';
 import { alignSigns, copyFrames, emptyMotion, sliceMotion } from './motion';
 import { withLayer, type RangeLayer } from './range-layer';
 import { spec } from './spec';
@@ -122,6 +122,11 @@ export function finishLayer(
     copyFrames(made, from, to, output, from);
   }
   return alignSigns(output);
+}
+
+/** The part of its song that a dance is for; null = all of it. */
+export function partOf({ motion, place }: UncorrectedDance): FrameRange | null {
+  return place ? { from: place.from, to: place.from + motion.frames } : null;
 }
 
 /** An uncorrected dance with its layers laid on, as the network of the next range sees it. */

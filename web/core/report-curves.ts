@@ -1,5 +1,6 @@
 /** Curves of the report: pure helpers on top of metrics.ts. */
-import { finishDance, type UncorrectedDance } from './finish';
+import { dancedPart } from './excerpt';
+import { finishDance, partOf, type UncorrectedDance } from './finish';
 import { consistencyError, meanJerk } from './metrics';
 import type { KeyPose, Motion } from './types';
 
@@ -32,8 +33,8 @@ export interface TradeOffPoint {
 
 /** One point of consistency against smoothness: the dance finished at a strength, without the network. */
 export function tradeOffPoint(dance: UncorrectedDance, keyPoses: readonly KeyPose[], strength: number): TradeOffPoint {
-  const motion = finishDance(dance, keyPoses, strength);
-  return { strength, error: consistencyError(motion, keyPoses), jerk: meanJerk(motion) };
+  const danced = dancedPart(finishDance(dance, keyPoses, strength), keyPoses, partOf(dance));
+  return { strength, error: consistencyError(danced.motion, danced.keyPoses), jerk: meanJerk(danced.motion) };
 }
 
 /**
