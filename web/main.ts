@@ -7,6 +7,7 @@ import { createListener } from './app/listener';
 import { createReporter } from './app/report-client';
 import { createStorage } from './app/storage';
 import { createStore } from './app/store';
+import { createTabs } from './app/tabs';
 import { Player } from './audio/player';
 import { App } from './ui/App';
 import { bindShortcuts } from './ui/shortcuts';
@@ -15,19 +16,24 @@ import type { Backend } from './workers/protocol';
 import './style.css';
 import './style-layout.css';
 import './style-timeline.css';
+import './style-beats.css';
 import './style-panels.css';
+import './style-pose.css';
 import './style-report.css';
 import './style-project.css';
+import './style-phone.css';
 
 const asked = new URLSearchParams(location.search).get('backend');
 const forcedBackend: Backend | undefined = asked === 'wasm' || asked === 'webgpu' ? asked : undefined;
 
+const tabs = createTabs();
 const store = createStore(
   {
     player: new Player(),
     listener: createListener(),
     engine: createEngine((model) => store.modelMoved(model)),
-    storage: createStorage(),
+    storage: createStorage('posebeat', () => tabs.writes.value),
+    tabs,
     assets: createAssets(document.baseURI),
     forcedBackend,
   },

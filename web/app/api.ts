@@ -31,7 +31,11 @@ export interface PosebeatApi {
   /** The dance: rotations frames x 72 axis-angle radians, root frames x 3 metres. */
   motion(): { fps: number; rotations: Float32Array; root: Float32Array };
   report(): DanceReport;
-  exportAs(format: ExportFormat): Promise<Blob>;
+  /**
+   * A file of the project: `project` is JSON text, or with `song: true` a zip with the song's own bytes inside (both open again as
+   * `.posebeat`).
+   */
+  exportAs(format: ExportFormat, options?: { song?: boolean }): Promise<Blob>;
   shareLink(): Promise<string>;
   /** A copy of the project document. */
   document(): ProjectDocument;
@@ -79,8 +83,8 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       onStage();
       return store.reportNow();
     },
-    async exportAs(format) {
-      if (format === 'project') return store.projectBlob();
+    async exportAs(format, options = {}) {
+      if (format === 'project') return store.projectFile(options.song === true);
       if (['bvh', 'glb', 'npz', 'curves'].includes(format)) {
         throw new Error(`Export as ${format} is not available yet: use "project".`);
       }

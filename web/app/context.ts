@@ -7,6 +7,7 @@ import type { BeatGrid, Features } from '../core/types';
 import type { Backend } from '../workers/protocol';
 import type { Assets, Engine, Listener, Storage } from './ports';
 import type { NoticeAction, State } from './state';
+import type { Tabs } from './tabs';
 
 /** The rooms around the app. */
 export interface Services {
@@ -15,6 +16,8 @@ export interface Services {
   engine: Engine;
   storage: Storage;
   assets: Assets;
+  /** Missing where there can be no other tab. */
+  tabs?: Tabs;
   /** From `?backend=`. */
   forcedBackend?: Backend;
 }

@@ -9,6 +9,16 @@ export async function hashBytes(bytes: ArrayBuffer): Promise<string> {
     const digest = new Uint8Array(await subtle.digest('SHA-256', bytes));
     return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
   }
+  return fnv(bytes);
+}
+
+/** True when `hash` is of these bytes, whichever of the two kinds it is. */
+export async function isHashOf(hash: string, bytes: ArrayBuffer): Promise<boolean> {
+  return hash === (hash.startsWith('fnv-') ? fnv(bytes) : await hashBytes(bytes));
+}
+
+/** FNV-1a from both ends, with the length. */
+function fnv(bytes: ArrayBuffer): string {
   const view = new Uint8Array(bytes);
   let low = 0x811c9dc5;
   let high = 0xcbf29ce4;

@@ -90,6 +90,8 @@ export interface Storage {
   saveSong(hash: string, song: Blob): Promise<void>;
   loadSong(hash: string): Promise<Blob | null>;
   load(): Promise<{ document: unknown; dance: SavedDance | null } | null>;
+  /** Asks the browser not to clear this away by itself. Resolves with its answer. */
+  persist?(): Promise<boolean>;
 }
 
 /** The opening demo. */

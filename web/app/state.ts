@@ -235,8 +235,12 @@ export function createState() {
     /** Counts the wishes to see the figure whole again. */
     frameRequests: signal(0),
     panel: signal<Panel>('poses'),
+    /** Small screens: whether the inspector is open; a large one shows it always. */
+    sheetOpen: signal(true),
     help: signal(false),
     notices: signal<Notice[]>([]),
+    /** Another tab has this project: what is changed here is not kept. */
+    elsewhere: signal(false),
     /** Read out by screen readers; not shown. */
     announcement: signal(''),
     ready: signal(false),

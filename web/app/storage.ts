@@ -1,47 +1,98 @@
-/** The visitor's work in IndexedDB: one project, its dance, and the last few songs. */
+/** The visitor's work in this browser: one project and its dance in IndexedDB, the bytes of the last few songs in the private file system. */
 import { openDB, type DBSchema, type IDBPDatabase } from 'idb';
 import type { ProjectDocument } from '../core/document';
 import type { SavedDance, Storage } from './ports';
+import { songFiles } from './song-files';
+
+/** A song that is kept. */
+interface KeptSong {
+  hash: string;
+  usedAt: number;
+  /** Its bytes; missing where they lie in a file of their own. */
+  song?: Blob;
+  /** Bytes of that file, to tell a whole one from a torn one. */
+  size?: number;
+  type?: string;
+}
 
 interface Schema extends DBSchema {
   work: { key: 'document' | 'dance'; value: unknown };
-  songs: { key: string; value: { hash: string; song: Blob; usedAt: number } };
+  songs: { key: string; value: KeptSong };
 }
 
 /** Songs kept for undo and the next visit; the least recently used go first. */
 const MAX_SONGS = 4;
 
-/** Opens the storage lazily; every call rejects where the browser has none. */
-export function createStorage(name = 'posebeat'): Storage {
+/** True for the error of a full disk, wherever it comes from. */
+export function isFull(error: unknown): boolean {
+  return error instanceof DOMException && error.name === 'QuotaExceededError';
+}
+
+/**
+ * Opens the storage lazily; every call rejects where the browser has none.
+ * @param mayWrite - False while another tab has the project: then document and dance are left alone.
+ */
+export function createStorage(name = 'posebeat', mayWrite: () => boolean = () => true): Storage {
   let opening: Promise<IDBPDatabase<Schema>> | null = null;
+  const files = songFiles(`${name}-songs`);
   const database = () => {
     opening ??= openDB<Schema>(name, 1, {
       upgrade(db) {
         db.createObjectStore('work');
         db.createObjectStore('songs', { keyPath: 'hash' });
       },
+      // The browser may close it (deleted site data, a full disk): the next call opens it anew.
+      terminated: () => (opening = null),
     });
+    opening.catch(() => (opening = null));
     return opening;
   };
 
+  /** Lets go of all songs but the `keep` most recently used. */
+  async function forgetSongs(db: IDBPDatabase<Schema>, keep: number): Promise<void> {
+    const all = await db.getAll('songs');
+    const old = all.sort((a, b) => b.usedAt - a.usedAt).slice(keep);
+    await Promise.all(old.flatMap(({ hash }) => [db.delete('songs', hash), files.remove(hash)]));
+  }
+
+  async function keepSong(db: IDBPDatabase<Schema>, hash: string, song: Blob): Promise<void> {
+    const { size, type } = song;
+    if (await files.write(hash, song)) {
+      await db.put('songs', { hash, usedAt: Date.now(), size, type });
+      return;
+    }
+    // A copy: a File only points at the disk and is unreadable once that file changes.
+    const copy = new Blob([await song.arrayBuffer()], { type });
+    await db.put('songs', { hash, usedAt: Date.now(), song: copy });
+  }
+
   return {
     async saveDocument(document: ProjectDocument) {
-      await (await database()).put('work', document, 'document');
+      if (mayWrite()) await (await database()).put('work', document, 'document');
     },
     async saveDance(dance: SavedDance) {
-      await (await database()).put('work', dance, 'dance');
+      if (mayWrite()) await (await database()).put('work', dance, 'dance');
     },
     async saveSong(hash, song) {
       const db = await database();
-      // A copy: a File only points at the disk and is unreadable once that file changes.
-      const copy = new Blob([await song.arrayBuffer()], { type: song.type });
-      await db.put('songs', { hash, song: copy, usedAt: Date.now() });
-      const all = await db.getAll('songs');
-      const old = all.sort((a, b) => b.usedAt - a.usedAt).slice(MAX_SONGS);
-      await Promise.all(old.map((each) => db.delete('songs', each.hash)));
+      try {
+        await keepSong(db, hash, song);
+      } catch (error) {
+        if (!isFull(error)) throw error;
+        // Former songs make room for this one, once.
+        await forgetSongs(db, 0);
+        await keepSong(db, hash, song);
+      }
+      await forgetSongs(db, MAX_SONGS);
     },
     async loadSong(hash) {
-      return (await (await database()).get('songs', hash))?.song ?? null;
+      const db = await database();
+      const kept = await db.get('songs', hash);
+      if (!kept) return null;
+      const song = kept.song ?? (await files.read(hash));
+      if (!song || (kept.size !== undefined && song.size !== kept.size)) return null;
+      await db.put('songs', { ...kept, usedAt: Date.now() }).catch(() => undefined);
+      return song;
     },
     async load() {
       const db = await database();
@@ -49,6 +100,10 @@ export function createStorage(name = 'posebeat'): Storage {
       if (document === undefined) return null;
       const dance = (await db.get('work', 'dance')) as SavedDance | undefined;
       return { document, dance: dance ?? null };
+    },
+    async persist() {
+      const storage = navigator.storage as StorageManager | undefined;
+      return (await storage?.persisted?.()) || ((await storage?.persist?.()) ?? false);
     },
   };
 }

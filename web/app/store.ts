@@ -5,24 +5,26 @@ import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import { beatActions } from './actions/beats';
 import { danceActions } from './actions/dance';
+import { demoActions } from './actions/demo';
 import { keyActions } from './actions/keys';
+import { layoutActions } from './actions/layout';
 import { overlayActions } from './actions/overlays';
 import { playbackActions } from './actions/playback';
 import { poseActions } from './actions/pose';
 import { pictureActions } from './actions/picture';
 import { projectActions } from './actions/project';
 import { songActions } from './actions/song';
+import { tabActions } from './actions/tabs';
 import { viewActions } from './actions/view';
 import { tapActions } from './actions/tap';
 import { trimActions } from './actions/trim';
+import { startAutosave } from './autosave';
 import type { Context, Services } from './context';
 import { tuningActions } from './actions/tuning';
 import { poseMath } from './pose-math';
 import type { Reporter } from './report-client';
 import { createState } from './state';
 
-/** Autosave waits until nothing changed for this long, milliseconds. */
-const AUTOSAVE_DELAY = 600;
 /** Info notices go by themselves, milliseconds; errors stay until dismissed. */
 const INFO_LIFETIME = 7000;
 /** One with a button stays long enough to be reached by keyboard. */
@@ -75,7 +77,13 @@ export function createStore(services: Services, reporter: Reporter) {
   const playback = playbackActions(context, view.revealTime);
   const pose = poseActions(context, keys, poseMath);
   const songs = songActions(context, dance);
-  const project = projectActions(context, songs, dance);
+  const demo = demoActions(context, songs, dance);
+  const project = projectActions(context, songs, demo, dance);
+  const tabs = tabActions(
+    context,
+    startAutosave(context, () => void project.saveProject(true)),
+    project,
+  );
 
   /** Features and beats of the whole song, waiting for the analysis where it still runs. */
   function analysed(): Promise<{ features: Features; grid: BeatGrid }> {
@@ -87,6 +95,9 @@ export function createStore(services: Services, reporter: Reporter) {
           queueMicrotask(() => stop());
         } else if (!song) {
           reject(new Error('There is no song yet: drop one first.'));
+          queueMicrotask(() => stop());
+        } else if (!song.buffer && !song.demo) {
+          reject(new Error(`Drop “${song.reference.name}” first: its sound is not kept in this browser.`));
           queueMicrotask(() => stop());
         }
       });
@@ -108,32 +119,6 @@ export function createStore(services: Services, reporter: Reporter) {
       void songs.followDocument();
     }
   };
-
-  autosave();
-
-  function autosave(): void {
-    let timer: ReturnType<typeof setTimeout> | undefined;
-    let told = false;
-    /** What the page opened with is not the visitor's work. */
-    let opened: ProjectDocument | null = null;
-    effect(() => {
-      const document = state.document.value;
-      if (!state.ready.value || !document.song) return;
-      opened ??= document;
-      if (document === opened) return;
-      clearTimeout(timer);
-      timer = setTimeout(() => {
-        services.storage.saveDocument(document).catch(() => {
-          if (told) return;
-          told = true;
-          context.notify(
-            'info',
-            'This browser does not keep your work (private window or full disk): save the project before you leave.',
-          );
-        });
-      }, AUTOSAVE_DELAY);
-    });
-  }
 
   const when = (condition: () => boolean) =>
     new Promise<void>((resolve) => {
@@ -161,8 +146,11 @@ export function createStore(services: Services, reporter: Reporter) {
     ...pose,
     ...songs,
     ...project,
+    ...demo,
+    ...tabs,
     ...view,
     ...overlayActions(context),
+    ...layoutActions(context),
     undo,
     redo,
     whenReady,

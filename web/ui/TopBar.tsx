@@ -1,5 +1,5 @@
 import { useStore } from './store-context';
-import { chooseFile, fileName, saveFile } from './files';
+import { chooseFile } from './files';
 import { Icon } from './Icon';
 import { tip } from './shortcuts';
 
@@ -69,7 +69,7 @@ export function TopBar() {
         class="tool wide"
         aria-label="Save the project"
         title="Save the project as a file"
-        onClick={() => saveFile(store.projectBlob(), fileName(name, 'posebeat'))}
+        onClick={() => void store.saveProject(true)}
       >
         <Icon name="download" />
       </button>

@@ -1,65 +1,35 @@
 /** Opening the page, saving and opening projects. */
 import type { ProjectDocument } from '../../core/document';
 import { parseDocument } from '../../core/document-read';
+import { MAX_PROJECT_BYTES, readProject, writeProject } from '../../core/formats/project-file';
 import { isAbort, messageOf, type Context } from '../context';
-import type { Song } from '../state';
+import { fileName, saveFile } from '../download';
+import { isHashOf } from '../hash';
+import type { SavedDance } from '../ports';
 import type { DanceActions } from './dance';
+import type { DemoActions } from './demo';
 import type { SongActions } from './song';
+import { offerFormer, onSong } from './song-offers';
+
+/** Of project files that are a zip: a type of our own, so that no browser unpacks them on its own. */
+const ZIP_TYPE = 'application/x-posebeat';
 
 /** Actions on whole projects. */
-export function projectActions(context: Context, songs: SongActions, dance: DanceActions) {
+export function projectActions(context: Context, songs: SongActions, demo: DemoActions, dance: DanceActions) {
   const { state, services, history } = context;
-  const { player } = services;
 
-  /** The demo's song arrives after its dance: the timer already runs, the sound joins in. */
-  async function bringSound(song: Song, url: string): Promise<void> {
-    const { signal } = new AbortController();
-    const bytes = await (await songs.fetchSong(url)).arrayBuffer();
-    const { buffer } = await services.listener.decode(bytes, signal);
-    if (state.song.value?.reference.hash !== song.reference.hash) return;
-    songs.updateSong({ buffer });
-    player.attach(buffer);
-    const analysis = await services.listener.analyse(
-      buffer,
-      { onProgress: (_, waveform) => waveform && isCurrent(song) && songs.updateSong({ waveform }) },
-      signal,
-    );
-    if (!isCurrent(song)) return;
-    songs.updateSong({
-      features: analysis.features,
-      grid: analysis.grid,
-      waveform: analysis.waveform,
-      complete: true,
-    });
+  /** The camera is no part of what was made. */
+  const sameWork = (a: ProjectDocument, b: ProjectDocument) =>
+    JSON.stringify({ ...a, camera: null }) === JSON.stringify({ ...b, camera: null });
+
+  /** Shows a dance that was kept, if it is of the song at hand. */
+  function showKept(saved: SavedDance | null): void {
+    if (saved?.hash !== state.song.value?.reference.hash || saved?.motion.frames !== state.frames.value) return;
+    const { motion, uncorrected, keyStrength } = saved;
+    const { keyPoses, grid, dials } = state.document.value;
+    const inputs = { keyPoses, grid, dials };
+    state.dance.value = { motion, kind: 'generated', inputs, result: null, uncorrected, keyStrength };
     void dance.measureShown();
-  }
-
-  const isCurrent = (song: Song) => state.song.value?.reference.hash === song.reference.hash;
-
-  async function openDemo(own?: ProjectDocument): Promise<void> {
-    const demo = await services.assets.demo();
-    const document = own ?? demo.document;
-    if (!demo.document.song) throw new Error('The demo has no song.');
-    const song: Song = {
-      reference: demo.document.song,
-      buffer: null,
-      waveform: null,
-      features: null,
-      grid: demo.document.grid,
-      complete: false,
-      demo: true,
-    };
-    history.reset(document);
-    context.sync();
-    const inputs = { keyPoses: demo.document.keyPoses, grid: document.grid, dials: document.dials };
-    songs.showSong(song, { motion: demo.motion, kind: 'demo', inputs, result: null });
-    if (!own) {
-      player.setMuted(true);
-      player.play();
-    }
-    bringSound(song, demo.songUrl).catch((error: unknown) => {
-      if (!isAbort(error)) context.notify('error', `The demo’s song could not be played. ${messageOf(error)}`);
-    });
   }
 
   async function restore(): Promise<boolean> {
@@ -71,79 +41,140 @@ export function projectActions(context: Context, songs: SongActions, dance: Danc
     } catch {
       return false; // what was saved is unreadable: better a working demo than a dead page
     }
-    if (!document.song) return false;
-    const demo = await services.assets.demo().catch(() => null);
-    if (demo?.document.song?.hash === document.song.hash) {
-      const untouched = JSON.stringify(document) === JSON.stringify(demo.document);
-      await openDemo(untouched ? undefined : document);
+    const { song } = document;
+    if (!song) return false;
+    const original = await demo.demoDocument();
+    if (original?.song?.hash === song.hash) {
+      if (sameWork(document, original)) {
+        await demo.showDemo('first');
+        history.reset({ ...history.present, camera: document.camera });
+        context.sync();
+      } else await demo.showDemo({ document, step: null });
       return true;
     }
-    const blob = await services.storage.loadSong(document.song.hash).catch(() => null);
-    if (!blob) return false;
-    const song = document.song;
-    await songs.openSong(blob, { name: song.name, start: false, document });
-    if (saved.dance?.hash === song.hash && saved.dance.motion.frames === state.frames.value) {
-      const { motion, uncorrected, keyStrength } = saved.dance;
-      const { keyPoses, grid, dials } = state.document.value;
-      const inputs = { keyPoses, grid, dials };
-      state.dance.value = { motion, kind: 'generated', inputs, result: null, uncorrected, keyStrength };
-      void dance.measureShown();
+    const blob = await services.storage.loadSong(song.hash).catch(() => null);
+    if (blob) await songs.openSong(blob, { name: song.name, start: false, document, restore: true });
+    else {
+      history.reset(document);
+      context.sync();
+      songs.showSilent(song);
     }
+    showKept(saved.dance);
     return true;
   }
+
+  /**
+   * Shows a document as one step that can be undone, with its song from `file`, the stage, the demo or this browser.
+   * @returns false when its song is nowhere: then nothing has changed, and dropping the song opens it.
+   */
+  async function openDocument(document: ProjectDocument, file: Blob | null): Promise<boolean> {
+    const here = state.song.value?.reference;
+    const wanted = document.song;
+    if (here && (wanted ? wanted.hash === here.hash : !file)) {
+      history.push(onSong(document, here), 'Open project');
+      context.sync();
+      return true;
+    }
+    if (wanted && wanted.hash === (await demo.demoDocument())?.song?.hash) {
+      await demo.showDemo({ document, step: 'Open project' });
+      return true;
+    }
+    const blob = file ?? (wanted && (await services.storage.loadSong(wanted.hash).catch(() => null)));
+    if (blob) {
+      await songs.openSong(blob, { name: wanted?.name ?? 'song', start: false, document });
+      return true;
+    }
+    if (wanted) {
+      songs.awaitSong(document);
+      return false;
+    }
+    history.push(document, 'Open project');
+    context.sync();
+    return true;
+  }
+
+  /** The bytes of a project file. */
+  async function projectFile(withSong: boolean): Promise<Blob> {
+    const document = state.document.value;
+    if (!withSong || !document.song) return new Blob([writeProject(document)], { type: 'application/json' });
+    const missing = `The file of “${document.song.name}” is no longer at hand: drop the song again, then save.`;
+    const song = await songs.songFile();
+    const bytes = await song?.arrayBuffer().catch(() => null);
+    if (!bytes || !(await isHashOf(document.song.hash, bytes))) throw new Error(missing);
+    return new Blob([writeProject(document, new Uint8Array(bytes))], { type: ZIP_TYPE });
+  }
+
+  songs.onMissing(async (wanted) => {
+    if ((await demo.demoDocument())?.song?.hash !== wanted.hash) return false;
+    await demo.showDemo('follow');
+    return true;
+  });
 
   return {
     /** Opens the page: the visitor's last work, else the demo. */
     async start(): Promise<void> {
-      const [poses, seeds] = await Promise.allSettled([services.assets.poses(), services.assets.seeds()]);
+      const [poses, seeds] = await Promise.allSettled([
+        services.assets.poses(),
+        services.assets.seeds(),
+        services.tabs?.start(),
+      ]);
       if (poses.status === 'fulfilled') state.poses.value = poses.value;
       if (seeds.status === 'fulfilled') state.seeds.value = seeds.value;
       if (poses.status === 'rejected' || seeds.status === 'rejected') {
         context.notify('error', 'The pose library could not be loaded. Reload the page to try again.');
       }
       try {
-        if (!(await restore())) await openDemo();
+        if (!(await restore())) await demo.showDemo('first');
       } catch (error) {
         context.notify('info', `The demo could not be shown (${messageOf(error)}). Drop a song to start.`);
       }
       state.ready.value = true;
     },
 
-    openDemo,
+    openDocument,
+    showKept,
+    sameWork,
+    projectFile,
 
-    /** The project as a file. */
-    projectBlob(): Blob {
-      return new Blob([JSON.stringify(state.document.value)], { type: 'application/json' });
+    /** Saves the project as a file, with the song inside or without; what is wrong becomes a notice. */
+    async saveProject(withSong: boolean): Promise<void> {
+      try {
+        const blob = await projectFile(withSong);
+        saveFile(blob, fileName(state.document.value.song?.name ?? 'dance', 'posebeat'));
+      } catch (error) {
+        context.notify('error', messageOf(error));
+      }
     },
 
-    /** Opens a saved project; a wrong file becomes a notice and changes nothing. */
-    async openProject(file: File): Promise<void> {
+    /** Opens a project file; a wrong one becomes a notice and changes nothing. */
+    async openProject(file: Blob): Promise<void> {
+      const former = history.present;
+      const touched = !state.song.value?.demo || history.undoLabel !== null;
       try {
-        if (file.size > 50e6) throw new Error('This file is too large for a Posebeat project.');
-        let raw: unknown;
-        try {
-          raw = JSON.parse(await file.text());
-        } catch {
-          throw new Error('This file is no Posebeat project: it is damaged or of another kind.');
+        if (file.size > MAX_PROJECT_BYTES) throw new Error('This file is too large for a Posebeat project.');
+        const { document, repairs, song } = readProject(new Uint8Array(await file.arrayBuffer()));
+        const bytes = song?.slice().buffer;
+        if (bytes && document.song && !(await isHashOf(document.song.hash, bytes))) {
+          throw new Error('The song inside this file is not the song of its project: the file is damaged.');
         }
-        const { document, repairs } = parseDocument(raw);
+        const name = document.song?.name ?? '';
+        const opened = await openDocument(document, bytes ? new Blob([bytes]) : null);
         if (repairs.length > 0) context.notify('info', `Opened with repairs. ${repairs.join(' ')}`);
-        const hash = document.song?.hash;
-        if (!hash || hash === state.song.value?.reference.hash) {
-          history.push({ ...document, song: state.document.value.song }, 'Open project');
-          context.sync();
+        if (!opened) {
+          context.notify('info', `Now drop “${name}”, the song of this project.`);
           return;
         }
-        const blob = await services.storage.loadSong(hash).catch(() => null);
-        if (blob) {
-          await songs.openSong(blob, { name: document.song!.name, start: false, document });
-          return;
-        }
-        songs.awaitSong(document);
-        context.notify('info', `Now drop “${document.song!.name}”, the song of this project.`);
+        context.announce(name ? `Project of ${name} opened.` : 'Project opened.');
+        const replaced = former.song?.hash !== history.present.song?.hash;
+        if (replaced && touched) offerFormer(context, former, 'The project is open.', songs.followDocument);
+        // A project holds what its dance is made from, not the dance.
+        if (state.stale.value && state.song.value?.buffer) void dance.generateForPage();
       } catch (error) {
         if (!isAbort(error)) context.notify('error', messageOf(error));
       }
     },
   };
 }
+
+/** Actions on whole projects. */
+export type ProjectActions = ReturnType<typeof projectActions>;

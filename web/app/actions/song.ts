@@ -1,13 +1,15 @@
 /** From a file to a song that can be danced to. */
-import { createDocument, type ProjectDocument } from '../../core/document';
+import { createDocument, type ProjectDocument, type SongReference } from '../../core/document';
+import { MAX_SONG_BYTES } from '../../core/formats/project-file';
 import { seedMotion } from '../../core/seed';
 import type { BeatGrid, Features } from '../../core/types';
 import { isAbort, messageOf, type Context } from '../context';
-import { hashBytes } from '../hash';
+import { hashBytes, isHashOf } from '../hash';
 import { measureSince } from '../marks';
 import type { Song } from '../state';
 import { previewDance } from '../preview';
 import type { DanceActions } from './dance';
+import { offerFormer, offerSong, onSong } from './song-offers';
 
 /** A song and the dance that goes with it, kept for undo across songs. */
 interface Shelf {
@@ -21,16 +23,16 @@ export interface OpenOptions {
   url?: string;
   /** Play it and make a dance by itself: what a drop does and the automation API does not. */
   start: boolean;
-  /** A document that this song belongs to (restore); otherwise the song begins a new one, unless it is the same song. */
+  /** A document that this song belongs to; otherwise the song begins a new one, unless it is the same song. */
   document?: ProjectDocument;
+  /** The document is what the page opens with: nothing before it can be brought back. */
+  restore?: boolean;
   /** Leave the document and its history alone: undo brought us here. */
   keepHistory?: boolean;
 }
 
 /** Songs kept in memory beside the current one. */
 const SHELF_SIZE = 2;
-/** Larger files are not kept for the next visit. */
-const MAX_KEPT_BYTES = 80e6;
 
 /** Actions on songs. */
 export function songActions(context: Context, dance: DanceActions) {
@@ -40,6 +42,10 @@ export function songActions(context: Context, dance: DanceActions) {
   let job: AbortController | null = null;
   /** A project whose song is not here yet. */
   let waiting: ProjectDocument | null = null;
+  let toldNotKept = false;
+  let fetchMissing: (wanted: SongReference) => Promise<boolean> = () => Promise.resolve(false);
+  /** The files of the songs of this visit, for saving a project with its song inside. */
+  const files = new Map<string, Blob>();
 
   const keepOnShelf = () => {
     const song = state.song.value;
@@ -85,12 +91,36 @@ export function songActions(context: Context, dance: DanceActions) {
     return new Error(`“${name}” could not be used. ${messageOf(error)}`);
   };
 
+  const offerOther = (name: string, project: ProjectDocument) =>
+    offerSong(context, project, name, () => {
+      if (waiting === project) waiting = null;
+    });
+
+  const keepSong = (hash: string, file: Blob, name: string) => {
+    const complain = () => {
+      if (toldNotKept) return;
+      toldNotKept = true;
+      context.notify(
+        'info',
+        `“${name}” could not be kept in this browser: after a reload you would have to drop it again. Save the project with the song inside to be safe.`,
+      );
+    };
+    if (file.size > MAX_SONG_BYTES) complain();
+    else services.storage.saveSong(hash, file).catch(complain);
+  };
+
   async function open(file: Blob, options: OpenOptions): Promise<Song> {
     job?.abort(new DOMException('Another song was opened.', 'AbortError'));
     const own = (job = new AbortController());
     const { signal } = own;
     const opened = performance.now();
-    const before = { song: state.song.value, dance: state.dance.value, document: history.present };
+    const before = {
+      song: state.song.value,
+      dance: state.dance.value,
+      document: history.present,
+      /** There is work of the visitor's own, not only the demo. */
+      touched: !state.song.value?.demo || history.undoLabel !== null,
+    };
     let shown = false;
     state.songJob.value = { name: options.name, stage: 'reading', fraction: 0 };
     context.announce(`Reading ${options.name}.`);
@@ -98,6 +128,7 @@ export function songActions(context: Context, dance: DanceActions) {
       if (file.size === 0) throw new Error('The file is empty: choose another one.');
       const bytes = await file.arrayBuffer();
       const hash = await hashBytes(bytes);
+      const awaited = waiting?.song ? await isHashOf(waiting.song.hash, bytes) : false;
       signal.throwIfAborted();
       state.songJob.value = { name: options.name, stage: 'decoding', fraction: 0 };
       const decoding = performance.now();
@@ -126,11 +157,21 @@ export function songActions(context: Context, dance: DanceActions) {
       const begin = () => {
         if (started) return;
         started = true;
-        const given = options.document ?? (waiting?.song?.hash === hash ? waiting : null);
-        if (waiting === given) waiting = null;
+        const given = options.document ?? (awaited ? waiting : null);
+        if (awaited) waiting = null;
         if (!options.keepHistory) {
-          if (given) history.reset({ ...given, song: { ...given.song, ...reference } });
-          else if (!same) history.push(createDocument(reference, before.document.dials), 'New song');
+          const former = before.document;
+          if (given) {
+            const next = onSong(given, reference);
+            if (options.restore) history.reset(next);
+            else history.push(next, 'Open project');
+          } else if (!same) {
+            // The view stays as the visitor turned it.
+            history.push({ ...createDocument(reference, former.dials), camera: former.camera }, 'New song');
+          }
+          if (options.start && !given && waiting) offerOther(options.name, waiting);
+          else if (options.start && !given && !same && before.touched)
+            offerFormer(context, former, `“${options.name}” begins a new project.`, follow);
         }
         context.sync();
         if (!options.start) return;
@@ -168,9 +209,10 @@ export function songActions(context: Context, dance: DanceActions) {
       begin();
       state.songJob.value = null;
       context.announce(`${options.name}: ${Math.round(analysis.grid.tempo)} beats per minute.`);
-      if (file.size <= MAX_KEPT_BYTES) {
-        services.storage.saveSong(hash, file).catch(() => undefined); // the document's own autosave tells about a full disk
-      }
+      files.delete(hash);
+      files.set(hash, file);
+      for (const old of [...files.keys()].slice(0, -1 - SHELF_SIZE)) files.delete(old);
+      if (!options.restore) keepSong(hash, file, options.name);
       return state.song.value!;
     } catch (error) {
       if (job === own) {
@@ -184,10 +226,40 @@ export function songActions(context: Context, dance: DanceActions) {
   function rollBack(before: { song: Song | null; dance: Shelf['dance']; document: ProjectDocument }): void {
     if (before.song) show(before.song, before.dance);
     if (history.present !== before.document) {
-      if (history.undoLabel === 'New song') history.abandon();
+      if (history.undoLabel === 'New song' || history.undoLabel === 'Open project') history.abandon();
       if (history.present !== before.document) history.push(before.document, 'Back to the former song');
     }
     context.sync();
+  }
+
+  /** A song whose bytes are gone: the project can be looked at, and dropping the song brings the sound. */
+  function showSilent(reference: SongReference): void {
+    const { grid } = history.present;
+    show({ reference, buffer: null, waveform: null, features: null, grid, complete: false, demo: false }, null);
+    context.notify(
+      'info',
+      `Drop “${reference.name}” again to hear it and to dance to it: it is not kept in this browser.`,
+    );
+  }
+
+  async function follow(): Promise<void> {
+    const wanted = history.present.song;
+    if (state.songJob.value || !wanted || wanted.hash === state.song.value?.reference.hash) return;
+    const kept = shelf.get(wanted.hash);
+    keepOnShelf();
+    if (kept) {
+      show(kept.song, kept.dance);
+      return;
+    }
+    if (await fetchMissing(wanted)) return;
+    const blob = await services.storage.loadSong(wanted.hash).catch(() => null);
+    if (!blob) {
+      showSilent(wanted);
+      return;
+    }
+    await open(blob, { name: wanted.name, start: false, keepHistory: true }).catch((error: unknown) => {
+      if (!isAbort(error)) context.notify('error', messageOf(error));
+    });
   }
 
   async function fetchSong(address: string): Promise<Blob> {
@@ -236,29 +308,30 @@ export function songActions(context: Context, dance: DanceActions) {
     },
 
     /** After undo or redo across songs: brings the sound of the document's song back. */
-    async followDocument(): Promise<void> {
-      const wanted = history.present.song;
-      if (state.songJob.value || !wanted || wanted.hash === state.song.value?.reference.hash) return;
-      const kept = shelf.get(wanted.hash);
-      keepOnShelf();
-      if (kept) {
-        show(kept.song, kept.dance);
-        return;
-      }
-      const blob = await services.storage.loadSong(wanted.hash).catch(() => null);
-      if (!blob) {
-        context.notify('info', `Drop “${wanted.name}” again to dance to it: its sound is not kept here.`);
-        return;
-      }
-      await open(blob, { name: wanted.name, start: false, keepHistory: true }).catch((error: unknown) => {
-        if (!isAbort(error)) context.notify('error', messageOf(error));
-      });
+    followDocument: follow,
+
+    /** Another way to get a song that is not kept here: the demo's. */
+    onMissing(fetch: (wanted: SongReference) => Promise<boolean>): void {
+      fetchMissing = fetch;
+    },
+
+    /** The bytes of the song at hand as its file had them, or null when they are gone. */
+    async songFile(): Promise<Blob | null> {
+      const reference = state.song.value?.reference;
+      if (!reference) return null;
+      const kept = await services.storage.loadSong(reference.hash).catch(() => null);
+      if (kept) return kept;
+      const file = files.get(reference.hash) ?? null;
+      if (file || !reference.url) return file;
+      return fetchSong(reference.url).catch(() => null);
     },
 
     /** Opens this project as soon as its song is dropped. */
     awaitSong(document: ProjectDocument): void {
       waiting = document;
     },
+
+    showSilent,
 
     /** Puts a song on stage that comes with its dance (the demo, a restored project). */
     showSong: show,
