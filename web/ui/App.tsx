@@ -1,3 +1,4 @@
+import { useComputed } from '@preact/signals';
 import type { Store } from '../app/store';
 import { DropOverlay } from './DropOverlay';
 import { HelpOverlay } from './HelpOverlay';
@@ -12,10 +13,13 @@ import { Transport } from './Transport';
 
 /** The whole page: one stage, one timeline, one inspector. */
 export function App({ store, thumbnails }: { store: Store; thumbnails: Thumbnails }) {
+  const { draft, sheetOpen } = store.state;
+  // Bound as a signal: the page itself is not drawn anew with every change of the edited pose.
+  const kind = useComputed(() => `app ${draft.value ? 'posing' : ''} ${sheetOpen.value ? '' : 'sheet-closed'}`);
   return (
     <StoreContext.Provider value={store}>
       <ThumbnailsContext.Provider value={thumbnails}>
-        <div class="app">
+        <div class={kind}>
           <TopBar />
           <StageView />
           <Transport />

@@ -1,3 +1,4 @@
+import { SheetHandle } from '../SheetHandle';
 import { useStore } from '../store-context';
 import type { Panel } from '../../app/state';
 import { ReportPanel } from '../report/ReportPanel';
@@ -32,22 +33,28 @@ export function Inspector() {
   };
   return (
     <aside class="inspector" aria-label="Inspector">
-      <div class="tabs" role="tablist" aria-label="Inspector">
-        {TABS.map((tab) => (
-          <button
-            key={tab.id}
-            id={`tab-${tab.id}`}
-            type="button"
-            role="tab"
-            aria-selected={panel.value === tab.id}
-            aria-controls="inspector-panel"
-            tabIndex={panel.value === tab.id ? 0 : -1}
-            onClick={() => store.showPanel(tab.id)}
-            onKeyDown={onKeyDown}
-          >
-            {tab.label}
-          </button>
-        ))}
+      <div class="inspector-head">
+        <div class="tabs" role="tablist" aria-label="Inspector">
+          {TABS.map((tab) => (
+            <button
+              key={tab.id}
+              id={`tab-${tab.id}`}
+              type="button"
+              role="tab"
+              aria-selected={panel.value === tab.id}
+              aria-controls="inspector-panel"
+              tabIndex={panel.value === tab.id ? 0 : -1}
+              onClick={() => {
+                store.showPanel(tab.id);
+                store.toggleSheet(true);
+              }}
+              onKeyDown={onKeyDown}
+            >
+              {tab.label}
+            </button>
+          ))}
+        </div>
+        <SheetHandle />
       </div>
       <div
         key={panel.value}
