@@ -95,10 +95,9 @@ def shorten_names(proto: onnx.ModelProto) -> None:
     def rename(name: str) -> str:
         return name if name in fixed else short.setdefault(name, f"v{len(short):x}")
 
-    for tensor in proto.graph.initializer:
-        tensor.name = rename(tensor.name)
+    for named in (*proto.graph.initializer, *proto.graph.value_info):
+        named.name = rename(named.name)
     for node in proto.graph.node:
         node.name = ""
         for names in (node.input, node.output):
             names[:] = [rename(name) for name in names]
-    del proto.graph.value_info[:]

@@ -32,6 +32,7 @@ from onnx import TensorProto, helper, numpy_helper
 from compress import SMALLEST_QUANTISED, output_axis, pack_six_bits, quantise, shorten_names, six_bit_constants, unpack_six_bits
 from model import INPUT_NAMES, OUTPUT_NAME, KeyPoseDancer, ModelConfig
 from samples import synthetic_inputs
+from shapes import name_lengths
 from spec import MOTION_SIZE, MUSIC_FRAMES, SEED_FRAMES, SPEC, spec_hash
 
 OPSET = 18
@@ -76,6 +77,7 @@ def to_onnx(model: KeyPoseDancer, name: str) -> onnx.ModelProto:
         )
     proto = _fold_constants(file.getvalue())
     proto.graph.output[0].type.tensor_type.shape.dim[2].dim_value = MOTION_SIZE
+    name_lengths(proto)
     set_metadata(proto, name, "fp32")
     return proto
 

@@ -15,6 +15,7 @@ from compress import pack_six_bits, quantise, six_bit_constants, unpack_six_bits
 from export_onnx import compress, run_onnx, to_onnx
 from model import INPUT_NAMES, OUTPUT_NAME, KeyPoseDancer, ModelConfig
 from samples import randomise, synthetic_inputs
+from shapes import SOURCES, measure_shapes, name_lengths
 from spec import spec_hash
 
 TESTS = Path(__file__).resolve().parents[2] / "tests" / "golden"
@@ -59,6 +60,31 @@ def test_plain_operators_and_metadata(light):
     assert "MIT" in metadata["licence"] and "AIST++" in metadata["attribution"]
     axes = {i.name: [d.dim_param for d in i.type.tensor_type.shape.dim][:2] for i in proto.graph.input}
     assert axes["music"] == ["B", "T"] and axes["seed"] == ["B", "S"]
+
+
+def test_lengths_inside_the_graph_are_named_for_what_they_are(light):
+    proto = light[1]
+    named = {v.name: [d.dim_param or d.dim_value for d in v.type.tensor_type.shape.dim] for v in proto.graph.value_info}
+    sources = {name for node in proto.graph.node if node.op_type in SOURCES for name in node.output}
+    assert len(named) > 100 and set(named) <= sources
+    sizes = ((1, 44, 90), (2, 23, 31))  # none of those that gave the names
+    for name, (_, shapes) in measure_shapes(proto, sizes).items():
+        for axis, dim in enumerate(named.get(name, [])):
+            expected = {"B": 0, "S": 1, "T": 2}.get(dim)
+            for size, shape in zip(sizes, shapes):
+                if expected is not None:
+                    assert shape[axis] == size[expected], name
+                elif isinstance(dim, int):
+                    assert shape[axis] == dim, name
+
+
+def test_a_tensor_whose_number_of_axes_changes_is_refused():
+    nodes = [helper.make_node("Shape", ["music"], ["shape"]), helper.make_node("Squeeze", ["music"], ["thin"]), helper.make_node("Size", ["thin"], ["size"])]
+    music = helper.make_tensor_value_info("music", TensorProto.FLOAT, ["B", "T", 15])
+    graph = helper.make_graph(nodes, "g", [music], [helper.make_tensor_value_info("size", TensorProto.INT64, [])])
+    proto = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 18)], ir_version=9)
+    with pytest.raises(ValueError, match="thin"):
+        name_lengths(proto)
 
 
 def test_six_bits_by_hand():
