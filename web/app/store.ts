@@ -4,6 +4,7 @@ import { createDocument, type ProjectDocument } from '../core/document';
 import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import { beatActions } from './actions/beats';
+import { cameraActions } from './actions/camera';
 import { danceActions } from './actions/dance';
 import { demoActions } from './actions/demo';
 import { keyActions } from './actions/keys';
@@ -149,6 +150,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...demo,
     ...tabs,
     ...view,
+    ...cameraActions(context),
     ...overlayActions(context),
     ...layoutActions(context),
     undo,

@@ -54,7 +54,7 @@ export interface TakeRange extends TimeRange {
   chosen: string | null;
 }
 
-/** Where the visitor looks from, metres. */
+/** Where the visitor looks from, metres; while the camera follows, x and z are counted from the dancer. */
 export interface CameraView {
   /** The camera goes along with the dancer. */
   follows: boolean;

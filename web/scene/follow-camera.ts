@@ -7,6 +7,11 @@ const LOOK_HEIGHT = 1.0;
 /** Opening view: a little to the figure's left and a little above its eyes. */
 const VIEW = { azimuth: 0.42, elevation: 0.13 };
 
+/** Damping has come to rest this long after the hand let go, milliseconds. */
+const SETTLE_TIME = 700;
+/** A click that moves the camera less than this, metres, is no wish for another view. */
+const STILL = 1e-3;
+
 /** An orbit camera whose centre eases after the dancer. What the user turned, zoomed or moved stays as it is. */
 export class FollowCamera {
   readonly camera = new PerspectiveCamera(30, 1, 0.05, 120);
@@ -16,6 +21,9 @@ export class FollowCamera {
   private readonly springs = [new Spring(0, 0.55), new Spring(0, 0.55)];
   private readonly goal = [0, 0];
   private touched = false;
+  /** Told when the camera rests where the user turned it to, or is back at the opening view. */
+  settled: () => void = () => undefined;
+  private settling: ReturnType<typeof setTimeout> | undefined;
   private gliding: { from: Vector3; to: Vector3; fromTarget: Vector3; toTarget: Vector3; progress: number } | null =
     null;
 
@@ -30,10 +38,14 @@ export class FollowCamera {
     this.controls.maxDistance = 14;
     this.controls.maxPolarAngle = Math.PI * 0.515;
     this.controls.zoomToCursor = false;
+    let before = this.view(true);
     this.controls.addEventListener('start', () => {
+      clearTimeout(this.settling);
+      if (this.settling === undefined) before = this.view(true);
       this.touched = true;
       this.gliding = null;
     });
+    this.controls.addEventListener('end', () => this.settle(() => before));
     this.jump();
   }
 
@@ -67,9 +79,32 @@ export class FollowCamera {
     if (!this.touched) this.jump();
   }
 
+  /** Where the camera is and what it looks at, metres; `relative` to the centre that follows the dancer, or in the world. */
+  view(relative: boolean): { position: Vector3; target: Vector3 } {
+    const [x, z] = relative ? this.centre : [0, 0];
+    const centre = new Vector3(x, 0, z);
+    return { position: this.camera.position.clone().sub(centre), target: this.controls.target.clone().sub(centre) };
+  }
+
+  /** Puts the camera where `view` said it was. */
+  restore(view: { position: readonly number[]; target: readonly number[] }, relative: boolean): void {
+    const [x, z] = relative ? this.centre : [0, 0];
+    this.touched = true;
+    this.gliding = null;
+    this.camera.position.set(view.position[0] + x, view.position[1], view.position[2] + z);
+    this.controls.target.set(view.target[0] + x, view.target[1], view.target[2] + z);
+    this.controls.update();
+  }
+
+  /** True while the opening view is shown, which fits itself to the size of the stage. */
+  get atHome(): boolean {
+    return !this.touched;
+  }
+
   /** Glides (or, with reduced motion, jumps) back to the opening view round the figure. */
   frame(): void {
     this.touched = false;
+    this.settle(() => null);
     if (this.calm) return this.jump();
     const { position, target } = this.home();
     this.gliding = {
@@ -110,8 +145,19 @@ export class FollowCamera {
     return this.controls.update(seconds) || moved;
   }
 
+  private settle(before: () => { position: Vector3; target: Vector3 } | null): void {
+    clearTimeout(this.settling);
+    this.settling = setTimeout(() => {
+      this.settling = undefined;
+      const [from, to] = [before(), this.view(true)];
+      const still = from && from.position.distanceTo(to.position) + from.target.distanceTo(to.target) < STILL;
+      if (!still) this.settled();
+    }, SETTLE_TIME);
+  }
+
   /** Stops listening. */
   dispose(): void {
+    clearTimeout(this.settling);
     this.controls.dispose();
   }
 

@@ -1,5 +1,6 @@
 /** The stage: the figure, its floor, lights and camera, and the loop that draws them. */
 import { NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three';
+import type { CameraView } from '../core/document';
 import type { FramePose } from '../core/types';
 import { JOINT_COUNT } from '../core/skeleton';
 import { Figure } from './figure';
@@ -51,6 +52,11 @@ export interface Stage {
   follow: boolean;
   /** Back to the opening view. */
   frameFigure(): void;
+  /** The view as it can be kept: null = the opening view, which fits itself to any screen. */
+  getView(): CameraView | null;
+  setView(view: CameraView): void;
+  /** Tells when the user has turned, zoomed or moved the camera, or asked for the opening view. */
+  onView(listener: (view: CameraView | null) => void): () => void;
   /** A glow on the floor that fades by itself; strength 0..1. */
   pulse(strength?: number): void;
   /** Draws per second over the last second, and draw calls of the last one. */
@@ -199,6 +205,25 @@ class WebGLStage implements Stage {
   frameFigure(): void {
     this.view.frame();
     this.dirty = true;
+  }
+
+  getView(): CameraView | null {
+    const follows = this.wantsFollow;
+    if (follows && this.view.atHome) return null;
+    const { position, target } = this.view.view(follows);
+    return { follows, position: position.toArray(), target: target.toArray() };
+  }
+
+  setView(view: CameraView): void {
+    this.follow = view.follows;
+    this.view.restore(view, view.follows);
+    this.dirty = true;
+  }
+
+  onView(listener: (view: CameraView | null) => void): () => void {
+    // A camera that stands still comes to the edited figure for a while only: that is no view to keep.
+    this.view.settled = () => (this.mode === 'dance' || this.wantsFollow) && listener(this.getView());
+    return () => (this.view.settled = () => undefined);
   }
 
   pulse(strength = 1): void {

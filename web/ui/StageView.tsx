@@ -9,6 +9,7 @@ import { chooseFile } from './files';
 import { PoseBar } from './PoseBar';
 import { tip } from './shortcuts';
 import { motionAt } from './stage/motion-at';
+import { bindCamera } from './stage-camera';
 import { bindOverlays } from './stage/overlays';
 import { OverlayTools } from './stage/OverlayTools';
 import { useStore } from './store-context';
@@ -244,6 +245,7 @@ function beatIndex(store: Store, time: number): number {
 function isDownbeat(store: Store, beat: number): boolean {
   const grid = store.state.grid.value!;
   return grid.downbeats.includes(grid.beats[beat]);
+    bindCamera(opened, store),
 }
 
 function sameNumbers(a: readonly number[], b: readonly number[]): boolean {
