@@ -17,6 +17,7 @@ import {
 } from '../../core/grid-edit';
 import { followBeats, rippleKeys, rippleRanges, type Warp } from '../../core/grid-ripple';
 import { nearestIndex } from '../../core/snap';
+import spec from '../../core/spec.json';
 import type { BeatGrid } from '../../core/types';
 import type { Context } from '../context';
 
@@ -24,6 +25,11 @@ import type { Context } from '../context';
 const MEASURE_DELAY = 400;
 /** Moments stay where they are in the music: the same beats are only counted otherwise. */
 const STAY: Warp = (time) => time;
+
+/** How far beats are nudged, seconds: about what an ear tells apart, and a picture. */
+export const NUDGE = { fine: 0.01, frame: 1 / spec.fps } as const;
+/** A step of nudging. */
+export type NudgeUnit = keyof typeof NUDGE;
 
 /** Actions on the beat grid. */
 export function beatActions(context: Context, measureShown: () => Promise<void>) {
@@ -104,23 +110,15 @@ export function beatActions(context: Context, measureShown: () => Promise<void>)
     return { next, warp };
   };
 
-  const shift = (seconds: number) =>
-    apply(
-      'Shift beats',
-      (grid) => shiftGrid(grid, seconds, state.duration.value),
-      (time) => time + seconds,
-    );
-
   return {
     setGrid,
 
-    /** All beats later (positive) or earlier, seconds. */
-    shiftBeats(seconds: number): void {
-      if (shift(seconds)) {
-        context.announce(
-          `Beats ${Math.round(Math.abs(seconds) * 1000)} milliseconds ${seconds < 0 ? 'earlier' : 'later'}.`,
-        );
-      }
+    /** All beats 10 ms or one frame earlier (-1) or later (1). */
+    nudgeBeats(direction: -1 | 1, unit: NudgeUnit): void {
+      const seconds = direction * NUDGE[unit];
+      const moves = (grid: BeatGrid) => shiftGrid(grid, seconds, state.duration.value);
+      if (!apply('Shift beats', moves, (time) => time + seconds)) return;
+      context.announce(`Beats ${Math.round(NUDGE[unit] * 1000)} milliseconds ${direction < 0 ? 'earlier' : 'later'}.`);
     },
 
     /** Half as many beats. */

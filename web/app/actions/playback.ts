@@ -36,7 +36,8 @@ export function playbackActions(context: Context, reveal: (time: number) => void
     },
     /** Goes to the key pose before (-1) or after (1) the playhead and selects it. */
     stepKey(direction: -1 | 1): void {
-      const keys = state.document.value.keyPoses;
+      const { keyPoses, trim } = state.document.value;
+      const keys = trim ? keyPoses.filter(({ time }) => time >= trim.start && time < trim.end) : keyPoses;
       const times = keys.map((key) => key.time);
       const margin = 0.02;
       const now = player.time();

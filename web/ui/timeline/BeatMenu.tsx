@@ -1,0 +1,156 @@
+import type { ComponentChildren, RefObject } from 'preact';
+import { useRef } from 'preact/hooks';
+import { tip } from '../shortcuts';
+import { useStore } from '../store-context';
+
+/** Id of the menu's element, for the button that opens it. */
+export const MENU_ID = 'beat-menu';
+/** Room between the menu and the page's edges, and its button, CSS pixels. */
+const MARGIN = 8;
+
+/** What else can be done to the beats: a popover of the browser's own. */
+export function BeatMenu({ opener }: { opener: RefObject<HTMLButtonElement | null> }) {
+  const store = useStore();
+  const { grid, document: project, ripple, metronome, loop } = store.state;
+  const menu = useRef<HTMLDivElement>(null);
+  const meter = grid.value?.beatsPerBar;
+
+  /** Above the button, where the stage is; below it where there is more room. */
+  const place = () => {
+    const [element, button] = [menu.current!, opener.current!.getBoundingClientRect()];
+    const { width } = element.getBoundingClientRect();
+    const above = button.top - 2 * MARGIN;
+    const below = innerHeight - button.bottom - 2 * MARGIN;
+    const up = above >= below;
+    element.style.maxHeight = `${Math.max(above, below)}px`;
+    element.style.left = `${Math.max(MARGIN, Math.min(button.left, innerWidth - width - MARGIN))}px`;
+    element.style.top = up ? 'auto' : `${button.bottom + MARGIN}px`;
+    element.style.bottom = up ? `${innerHeight - button.top + MARGIN}px` : 'auto';
+  };
+
+  return (
+    <div
+      id={MENU_ID}
+      ref={menu}
+      class="beat-menu"
+      popover="auto"
+      role="dialog"
+      aria-label="Beats"
+      onToggle={(event) => {
+        if (event.newState !== 'open') return;
+        place();
+        menu.current?.querySelector<HTMLElement>('button:not(:disabled)')?.focus();
+      }}
+      onKeyDown={(event) => {
+        if (event.key !== 'Escape') return;
+        // Esc belongs to the innermost thing: the taps, then this menu; the page must not hear of it.
+        event.preventDefault();
+        event.stopPropagation();
+        if (store.state.tapping.value) store.cancelTaps();
+        else {
+          menu.current?.hidePopover();
+          opener.current?.focus();
+        }
+      }}
+    >
+      <Row label="Tempo">
+        <Do run={() => store.halveBeats()} title="Every second beat only">
+          ÷ 2
+        </Do>
+        <Do run={() => store.doubleBeats()} title="A beat more between every two">
+          × 2
+        </Do>
+      </Row>
+      <Row label="Shift">
+        <Do run={() => store.nudgeBeats(-1, 'frame')} title={tip('beats-frame-earlier')}>
+          −1 frame
+        </Do>
+        <Do run={() => store.nudgeBeats(-1, 'fine')} title={tip('beats-earlier')}>
+          −10 ms
+        </Do>
+        <Do run={() => store.nudgeBeats(1, 'fine')} title={tip('beats-later')}>
+          +10 ms
+        </Do>
+        <Do run={() => store.nudgeBeats(1, 'frame')} title={tip('beats-frame-later')}>
+          +1 frame
+        </Do>
+      </Row>
+      <Row label="Bars">
+        {([3, 4] as const).map((each) => (
+          <Do key={each} pressed={meter === each} run={() => store.setMeter(each)} title={`${each} beats in a bar`}>
+            {each}/4
+          </Do>
+        ))}
+        <Do run={() => store.setBarOne()} title="A bar begins on the beat nearest to the playhead">
+          Bar 1 at playhead
+        </Do>
+      </Row>
+      <Row label="Beat">
+        <Do run={() => store.insertBeat()} title="A beat that was missed, at the playhead">
+          Add at playhead
+        </Do>
+      </Row>
+      <Row label="Dance to">
+        <Do
+          run={() => store.trimToLoop()}
+          disabled={loop.value === null}
+          title={loop.value ? 'Only the looped stretch of the song' : 'Drag in the ruler first, to loop a stretch'}
+        >
+          Looped part
+        </Do>
+        <Do run={() => store.setTrim(null)} disabled={project.value.trim === null} title="All of the song">
+          Whole song
+        </Do>
+      </Row>
+      <label class="beat-check">
+        <input type="checkbox" checked={ripple.value} onChange={() => store.toggleRipple()} />
+        Key poses go along with their beats
+      </label>
+      <label class="beat-check" title={tip('metronome')}>
+        <input type="checkbox" checked={metronome.value} onChange={() => store.toggleMetronome()} />
+        Click on every beat <kbd>K</kbd>
+      </label>
+      <button
+        type="button"
+        class="secondary full"
+        disabled={project.value.grid === null}
+        title="Takes all changes of the beats back"
+        onClick={() => store.resetBeats()}
+      >
+        Beats as analysed
+      </button>
+    </div>
+  );
+}
+
+function Row({ label, children }: { label: string; children: ComponentChildren }) {
+  return (
+    <div class="beat-row" role="group" aria-label={label}>
+      <span aria-hidden="true">{label}</span>
+      {children}
+    </div>
+  );
+}
+
+interface DoProps {
+  run: () => void;
+  title: string;
+  pressed?: boolean;
+  disabled?: boolean;
+  children: ComponentChildren;
+}
+
+function Do({ run, title, pressed, disabled, children }: DoProps) {
+  return (
+    <button
+      type="button"
+      class="bar-button framed"
+      title={title}
+      aria-pressed={pressed}
+      disabled={disabled}
+      onClick={run}
+    >
+      {children}
+    </button>
+  );
+}
