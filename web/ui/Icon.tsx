@@ -1,6 +1,8 @@
 import activity from 'lucide-static/icons/activity.svg?raw';
+import chevronDown from 'lucide-static/icons/chevron-down.svg?raw';
 import chevronLeft from 'lucide-static/icons/chevron-left.svg?raw';
 import chevronRight from 'lucide-static/icons/chevron-right.svg?raw';
+import chevronUp from 'lucide-static/icons/chevron-up.svg?raw';
 import check from 'lucide-static/icons/check.svg?raw';
 import dices from 'lucide-static/icons/dices.svg?raw';
 import download from 'lucide-static/icons/download.svg?raw';
@@ -49,11 +51,20 @@ import paste from 'lucide-static/icons/clipboard-paste.svg?raw';
 import pushpin from 'lucide-static/icons/pin.svg?raw';
 import rotate3d from 'lucide-static/icons/rotate-3d.svg?raw';
 import otherSide from 'lucide-static/icons/arrow-left-right.svg?raw';
-import upright from 'lucide-static/icons/accessibility.svg?raw';
 import turn from 'lucide-static/icons/orbit.svg?raw';
 import globe from 'lucide-static/icons/globe.svg?raw';
+import lock from 'lucide-static/icons/lock.svg?raw';
+import lockOpen from 'lucide-static/icons/lock-open.svg?raw';
+import distribute from 'lucide-static/icons/align-horizontal-distribute-center.svg?raw';
+import duplicate from 'lucide-static/icons/copy-plus.svg?raw';
+import locate from 'lucide-static/icons/locate-fixed.svg?raw';
 
 const ICONS = {
+  lock,
+  lockOpen,
+  distribute,
+  duplicate,
+  locate,
   axes,
   balance,
   blend,
@@ -66,13 +77,14 @@ const ICONS = {
   pushpin,
   rotate3d,
   otherSide,
-  upright,
   turn,
   globe,
   activity,
   check,
+  chevronDown,
   chevronLeft,
   chevronRight,
+  chevronUp,
   close,
   dices,
   download,
