@@ -75,8 +75,8 @@ test('a joint is turned in the pose editor and the pose goes onto the timeline',
   await page.keyboard.press('Enter');
   const before = await page.evaluate(() => window.posebeat.document().keyPoses[0].rotations);
   await page.locator('.key-pose').dblclick();
-  await page.getByLabel('Joint').selectOption({ label: 'Left elbow' });
-  const angle = page.getByRole('spinbutton').nth(1);
+  await page.getByLabel('Joint', { exact: true }).selectOption({ label: 'Left elbow' });
+  const angle = page.getByLabel('Turn y, degrees');
   await angle.fill('-75');
   await angle.press('Enter');
   await page

@@ -1,3 +1,4 @@
+import { jointLabel } from '../scene/pose-edit';
 import { useStore } from './store-context';
 import { Icon } from './Icon';
 import { tip } from './shortcuts';
@@ -5,14 +6,22 @@ import { tip } from './shortcuts';
 /** Over the stage while a pose is edited: what to do, and the ways out. */
 export function PoseBar() {
   const store = useStore();
-  const draft = store.state.draft.value;
+  const { draft: signal, document, poseBlend, poseWord, poseTools } = store.state;
+  const draft = signal.value;
   if (!draft) return null;
-  const existing = draft.keyId !== null && store.state.document.value.keyPoses.some((key) => key.id === draft.keyId);
+  const existing = draft.keyId !== null && document.value.keyPoses.some((key) => key.id === draft.keyId);
+  const moving = poseTools.value.mode === 'move';
+  const blend = poseBlend.value;
+  const hint = blend
+    ? `${Math.round(blend.amount * 100)}% ${blend.name}. Esc takes it back.`
+    : draft.joint === null
+      ? `Click a joint, then ${moving ? 'drag it: the body follows' : 'turn it by its rings'}.`
+      : `${jointLabel(draft.joint)}: ${moving ? 'drag it, or use' : 'turn its rings, or use'} the arrow keys.`;
   return (
     <div class="pose-bar" role="toolbar" aria-label="Pose editor">
       <span class="pose-bar-hint">
         <strong>{existing ? 'Editing a key pose' : 'New pose'}</strong>
-        <small>Click a joint, then turn it by its rings.</small>
+        <small class={poseWord.value ? 'word' : ''}>{poseWord.value || hint}</small>
       </span>
       <button type="button" class="quiet" onClick={() => store.closeDraft()}>
         Cancel

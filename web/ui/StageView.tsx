@@ -1,15 +1,17 @@
 import { useEffect, useRef } from 'preact/hooks';
-import { effect } from '@preact/signals';
+import { effect, useSignal, type Signal } from '@preact/signals';
 import { framePose, type MutableFramePose } from '../core/motion';
 import type { Motion } from '../core/types';
-import type { Stage } from '../scene/stage';
+import type { JointHover, Stage } from '../scene/stage';
 import type { Store } from '../app/store';
 import { Icon } from './Icon';
 import { chooseFile } from './files';
+import { onStageKey, type PosingStage } from './pose/stage-keys';
+import { ToolStrip } from './pose/ToolStrip';
 import { PoseBar } from './PoseBar';
+import { bindCamera } from './stage-camera';
 import { tip } from './shortcuts';
 import { motionAt } from './stage/motion-at';
-import { bindCamera } from './stage-camera';
 import { bindOverlays } from './stage/overlays';
 import { OverlayTools } from './stage/OverlayTools';
 import { useStore } from './store-context';
@@ -18,11 +20,16 @@ import { useStore } from './store-context';
 export function StageView() {
   const store = useStore();
   const container = useRef<HTMLDivElement>(null);
+  const stage = useRef<Stage | null>(null);
+  const hover = useSignal<JointHover | null>(null);
 
   useEffect(() => {
     let stop: () => void = () => undefined;
     let gone = false;
-    void startStage(container.current!, store).then((dispose) => {
+    void startStage(container.current!, store, (opened) => {
+      stage.current = opened;
+      opened.onHover((joint) => (hover.value = joint));
+    }).then((dispose) => {
       if (gone) dispose();
       else stop = dispose;
     });
@@ -30,13 +37,25 @@ export function StageView() {
       gone = true;
       stop();
     };
-  }, [store]);
+  }, [store, hover]);
 
   const { draft, song } = store.state;
   return (
     <main class={`stage ${draft.value ? 'posing' : ''}`} aria-label="Stage">
-      <div class="stage-canvas" ref={container} />
-      {draft.value ? <PoseBar /> : (!song.value || song.value.demo) && <Welcome />}
+      <div
+        class="stage-canvas"
+        ref={container}
+        {...(draft.value && {
+          role: 'application',
+          'aria-label': 'Figure',
+          'aria-describedby': 'figure-keys',
+          tabIndex: 0,
+          onKeyDown: (event: KeyboardEvent) => {
+            if (stage.current && onStageKey(event, stage.current, store)) event.preventDefault();
+          },
+        })}
+      />
+      {draft.value ? <Posing hover={hover} /> : (!song.value || song.value.demo) && <Welcome />}
       <SoundChip />
       <WorkChip />
       <div class="stage-tools">
@@ -44,6 +63,26 @@ export function StageView() {
         <CameraTools />
       </div>
     </main>
+  );
+}
+
+/** What lies over the stage while a pose is edited. */
+function Posing({ hover }: { hover: Signal<JointHover | null> }) {
+  const over = hover.value;
+  return (
+    <>
+      <PoseBar />
+      <ToolStrip />
+      <p id="figure-keys" class="visually-hidden">
+        Arrow keys and Page Up and Down turn or move the chosen joint, further with Shift. With Control they go from
+        joint to joint.
+      </p>
+      {over && (
+        <span class="joint-tip" aria-hidden="true" style={{ left: `${over.x}px`, top: `${over.y}px` }}>
+          {over.label}
+        </span>
+      )}
+    </>
   );
 }
 
@@ -161,7 +200,7 @@ function Work(props: { text: string; fraction: number; tone: 'music' | 'motion';
 }
 
 /** Ties the stage to the store: the clock moves the figure, the editor's draft is on the gizmo. */
-async function startStage(container: HTMLElement, store: Store): Promise<() => void> {
+async function startStage(container: HTMLElement, store: Store, onOpen: (stage: Stage) => void): Promise<() => void> {
   const { state } = store;
   const pose: MutableFramePose = { root: new Float32Array(3), quaternions: new Float32Array(96) };
   let stage: Stage | null = null;
@@ -194,6 +233,7 @@ async function startStage(container: HTMLElement, store: Store): Promise<() => v
   if (!stage) return frameLoop(onFrame); // no picture, but the sound and the timeline go on
 
   const opened = stage;
+  onOpen(opened);
   const undo: (() => void)[] = [opened.beforeFrame(onFrame)];
   let own: readonly number[] | null = null;
   undo.push(
@@ -205,6 +245,7 @@ async function startStage(container: HTMLElement, store: Store): Promise<() => v
     effect(() => {
       opened.follow = state.cameraFollows.value;
     }),
+    bindCamera(opened, store),
     effect(() => {
       if (state.frameRequests.value > 0) opened.frameFigure();
     }),
@@ -222,6 +263,7 @@ async function startStage(container: HTMLElement, store: Store): Promise<() => v
       }
       opened.selectJoint(draft.joint);
     }),
+    effect(() => (opened as PosingStage).setPoseTools?.(state.poseTools.value)),
     bindOverlays(opened, store),
   );
   return () => {
@@ -245,7 +287,6 @@ function beatIndex(store: Store, time: number): number {
 function isDownbeat(store: Store, beat: number): boolean {
   const grid = store.state.grid.value!;
   return grid.downbeats.includes(grid.beats[beat]);
-    bindCamera(opened, store),
 }
 
 function sameNumbers(a: readonly number[], b: readonly number[]): boolean {
