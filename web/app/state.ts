@@ -220,6 +220,8 @@ export function createState() {
     ripple: signal(true),
     /** Tap tempo under way, or null. */
     tapping: signal<Tapping | null>(null),
+    /** The walk-through: which step is shown, from 0; null = none. */
+    tour: signal<number | null>(null),
     /** A click on every beat. */
     metronome: signal(false),
     /** What key poses snap to. */

@@ -16,6 +16,7 @@ import { pictureActions } from './actions/picture';
 import { projectActions } from './actions/project';
 import { songActions } from './actions/song';
 import { tabActions } from './actions/tabs';
+import { tourActions } from './actions/tour';
 import { viewActions } from './actions/view';
 import { tapActions } from './actions/tap';
 import { trimActions } from './actions/trim';
@@ -153,6 +154,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...cameraActions(context),
     ...overlayActions(context),
     ...layoutActions(context),
+    ...tourActions(context),
     undo,
     redo,
     whenReady,
@@ -160,6 +162,7 @@ export function createStore(services: Services, reporter: Reporter) {
     notify: context.notify,
   };
 }
+    announce: context.announce,
 
 /** State and actions of the page. */
 export type Store = ReturnType<typeof createStore>;

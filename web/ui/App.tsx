@@ -9,6 +9,7 @@ import { StoreContext } from './store-context';
 import { ThumbnailsContext, type Thumbnails } from './thumbs';
 import { Timeline } from './timeline/Timeline';
 import { TopBar } from './TopBar';
+import { Tour } from './tour/Tour';
 import { Transport } from './Transport';
 
 /** The whole page: one stage, one timeline, one inspector. */
@@ -29,6 +30,7 @@ export function App({ store, thumbnails }: { store: Store; thumbnails: Thumbnail
           <Inspector />
           <Notices />
           <HelpOverlay />
+          <Tour />
           <DropOverlay />
         </div>
       </ThumbnailsContext.Provider>

@@ -1,3 +1,4 @@
+import { useComputed, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { Icon } from './Icon';
 import { keyText, SHORTCUTS } from './shortcuts';
@@ -12,7 +13,10 @@ export function HelpOverlay() {
     if (open) dialog.current?.showModal();
     else dialog.current?.close();
   }, [open]);
-  const groups = [...new Set(SHORTCUTS.map((shortcut) => shortcut.group))];
+  const leaveTo = (run: () => void) => () => {
+    store.toggleHelp(false);
+    run();
+  };
   return (
     <dialog
       class="help"
@@ -35,37 +39,66 @@ export function HelpOverlay() {
             <li>Double-click a pose to change it: click a joint on the figure and turn it.</li>
             <li>Press Generate. The figure dances through your poses.</li>
           </ol>
-          <div class="help-groups">
-            {groups.map((group) => (
-              <section key={group}>
-                <h3>{group}</h3>
-                <dl>
-                  {SHORTCUTS.filter((shortcut) => shortcut.group === group).map((shortcut) => (
-                    <div key={shortcut.id}>
-                      <dt>
-                        {shortcut.keys.map((combo) => (
-                          <kbd key={combo}>{keyText(combo)}</kbd>
-                        ))}
-                      </dt>
-                      <dd>{shortcut.label}</dd>
-                    </div>
-                  ))}
-                </dl>
-              </section>
-            ))}
+          <div class="help-ways">
+            <button type="button" class="secondary" onClick={leaveTo(() => store.startTour())}>
+              Show the first steps
+            </button>
+            <button type="button" class="secondary" onClick={leaveTo(() => void store.openDemo())}>
+              Show the demo again
+            </button>
           </div>
-          <button
-            type="button"
-            class="quiet"
-            onClick={() => {
-              store.toggleHelp(false);
-              void store.openDemo();
-            }}
-          >
-            Show the demo again
-          </button>
+          <Keys />
         </div>
       )}
     </dialog>
+  );
+}
+
+/** The table of keys, found by what they do or by the key. */
+function Keys() {
+  const query = useSignal('');
+  const found = useComputed(() => {
+    const words = query.value.toLowerCase().split(/\s+/).filter(Boolean);
+    return SHORTCUTS.filter(({ label, group, keys }) => {
+      const text = `${label} ${group} ${keys.map(keyText).join(' ')}`.toLowerCase();
+      return words.every((word) => text.includes(word));
+    });
+  });
+  const groups = [...new Set(found.value.map((shortcut) => shortcut.group))];
+  return (
+    <>
+      <label class="search">
+        <Icon name="search" size={16} />
+        <span class="visually-hidden">Search the keys</span>
+        <input
+          type="search"
+          placeholder="Search the keys"
+          value={query.value}
+          onInput={(event) => (query.value = event.currentTarget.value)}
+        />
+      </label>
+      {groups.length === 0 && <p class="empty">No key does that.</p>}
+      <div class="help-groups">
+        {groups.map((group) => (
+          <section key={group}>
+            <h3>{group}</h3>
+            <dl>
+              {found.value
+                .filter((shortcut) => shortcut.group === group)
+                .map((shortcut) => (
+                  <div key={shortcut.id}>
+                    <dt>
+                      {shortcut.keys.map((combo) => (
+                        <kbd key={combo}>{keyText(combo)}</kbd>
+                      ))}
+                    </dt>
+                    <dd>{shortcut.label}</dd>
+                  </div>
+                ))}
+            </dl>
+          </section>
+        ))}
+      </div>
+    </>
   );
 }

@@ -7,6 +7,15 @@ export function Notices() {
   return (
     <>
       <div class="notices" role="region" aria-label="Messages">
+        {store.state.elsewhere.value && (
+          <div class="notice info elsewhere" role="status">
+            <Icon name="info" />
+            <span>This project is open in another tab. What you change here is not kept.</span>
+            <button type="button" class="secondary" onClick={() => void store.workHere()}>
+              Work here
+            </button>
+          </div>
+        )}
         {store.state.notices.value.map(({ id, kind, text, action }) => (
           <div key={id} class={`notice ${kind}`} role={kind === 'error' ? 'alert' : 'status'}>
             <Icon name={kind === 'error' ? 'warning' : 'info'} />

@@ -1,6 +1,7 @@
 import { useStore } from './store-context';
-import { chooseFile } from './files';
+import { chooseFile, chooseProject } from './files';
 import { Icon } from './Icon';
+import { SaveMenu } from './SaveMenu';
 import { tip } from './shortcuts';
 
 /** Name of the song, undo, project, help. */
@@ -26,7 +27,7 @@ export function TopBar() {
       </div>
       <button
         type="button"
-        class="tool labelled"
+        class="tool labelled new-song"
         onClick={() => chooseFile(store)}
         title="Choose another song, or drop one anywhere"
       >
@@ -59,20 +60,12 @@ export function TopBar() {
         type="button"
         class="tool wide"
         aria-label="Open a project"
-        title="Open a project"
-        onClick={() => chooseFile(store, '.posebeat,.json,application/json')}
+        title={tip('open')}
+        onClick={() => chooseProject(store)}
       >
         <Icon name="folder" />
       </button>
-      <button
-        type="button"
-        class="tool wide"
-        aria-label="Save the project"
-        title="Save the project as a file"
-        onClick={() => void store.saveProject(true)}
-      >
-        <Icon name="download" />
-      </button>
+      <SaveMenu />
       <button
         type="button"
         class="tool"

@@ -3,7 +3,7 @@ import type { Store } from '../app/store';
 
 export { fileName, saveFile } from '../app/download';
 
-const PROJECT = /\.(posebeat|json)$/i;
+const PROJECT = /\.(posebeat|json|zip)$/i;
 
 /** Opens whatever file it is: a project or a song. */
 export function openFile(store: Store, file: File): void {
@@ -12,13 +12,26 @@ export function openFile(store: Store, file: File): void {
 }
 
 /** Asks for a file. */
-export function chooseFile(store: Store, accept = 'audio/*,video/mp4,.m4a,.flac,.ogg,.opus'): void {
+export function chooseFile(
+  store: Store,
+  accept = 'audio/*,video/mp4,.m4a,.flac,.ogg,.opus',
+  open: (store: Store, file: File) => void = openFile,
+): void {
   const input = document.createElement('input');
   input.type = 'file';
   input.accept = accept;
   input.addEventListener('change', () => {
     const file = input.files?.[0];
-    if (file) openFile(store, file);
+    if (file) open(store, file);
   });
   input.click();
+}
+
+/** Kinds of project files; some systems know a file by its extension, others by its type. */
+const PROJECT_KINDS =
+  '.posebeat,.json,.zip,application/x-posebeat,application/json,application/zip,application/octet-stream';
+
+/** Asks for a project file. */
+export function chooseProject(store: Store): void {
+  chooseFile(store, PROJECT_KINDS, (_, file) => void store.openProject(file));
 }

@@ -1,0 +1,65 @@
+import { useRef } from 'preact/hooks';
+import { chooseProject } from './files';
+import { Icon, type IconName } from './Icon';
+import { keyText, SHORTCUTS } from './shortcuts';
+import { useStore } from './store-context';
+
+const MENU_ID = 'project-menu';
+
+/** The project as a file: saved with its song or without, opened, and the demo. The browser's own popover. */
+export function SaveMenu() {
+  const store = useStore();
+  const menu = useRef<HTMLDivElement>(null);
+  const { document, song } = store.state;
+  const then = (run: () => void) => () => {
+    menu.current?.hidePopover();
+    run();
+  };
+  const name = document.value.song?.name;
+  return (
+    <>
+      <button
+        type="button"
+        class="tool"
+        aria-label="Save the project"
+        title="Save the project as a file, with the song or without"
+        aria-haspopup="true"
+        popovertarget={MENU_ID}
+      >
+        <Icon name="download" />
+      </button>
+      <div id={MENU_ID} class="menu project-menu" popover="auto" ref={menu} role="group" aria-label="Project">
+        <Entry
+          icon="music"
+          text="Save with the song inside"
+          hint={name ? `One file that opens anywhere` : 'There is no song yet: the same as without'}
+          shortcut="save"
+          onClick={then(() => void store.saveProject(true))}
+        />
+        <Entry
+          icon="download"
+          text="Save without the song"
+          hint="A small file; opening it asks for the song"
+          onClick={then(() => void store.saveProject(false))}
+        />
+        <hr />
+        <Entry icon="folder" text="Open a project" shortcut="open" onClick={then(() => chooseProject(store))} />
+        {!song.value?.demo && <Entry icon="play" text="Show the demo" onClick={then(() => void store.openDemo())} />}
+      </div>
+    </>
+  );
+}
+
+function Entry(props: { icon: IconName; text: string; hint?: string; shortcut?: string; onClick: () => void }) {
+  const keys = SHORTCUTS.find((each) => each.id === props.shortcut)?.keys[0];
+  return (
+    <button type="button" class="menu-entry" onClick={props.onClick}>
+      <Icon name={props.icon} />
+      <span>
+        {props.text}
+        {props.hint && <small>{props.hint}</small>}
+      </span>
+      {keys && <kbd>{keyText(keys)}</kbd>}
+    </button>
+  );
+}
