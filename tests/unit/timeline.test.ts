@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { barAndBeat, clockTime, lowerBound, nearestBeat, stepBeat } from '../../web/app/snapping';
-import { barStep, placeKeys, timeToX, xToTime } from '../../web/ui/timeline/geometry';
+import { barStep, keyWidths, placeKeys, stretchInSight, timeToX, xToTime } from '../../web/ui/timeline/geometry';
 import { keyText, matches, SHORTCUTS } from '../../web/ui/shortcuts';
 
 const grid = { tempo: 120, beatsPerBar: 4 as const, beats: [0.5, 1, 1.5, 2, 2.5, 3], downbeats: [1, 3] };
@@ -40,14 +40,28 @@ describe('geometry', () => {
     expect(timeToX(view, 4)).toBe(100);
     expect(xToTime(view, timeToX(view, 7.3))).toBeCloseTo(7.3, 12);
   });
-  it('places only what is in sight, and what must stay', () => {
+  it('places only what is in sight and a little more, and what must stay', () => {
     const keys = Array.from({ length: 400 }, (_, i) => key(`k${i}`, i));
-    const placed = placeKeys(keys, view, 500, new Set(['k300']));
-    expect(placed.map((each) => each.key.id)).toEqual([...Array.from({ length: 13 }, (_, i) => `k${i + 1}`), 'k300']);
+    const stretch = stretchInSight(view, 500);
+    expect(stretch).toEqual({ from: -52, to: 808 });
+    const placed = placeKeys(keys, keyWidths(keys, 50), 50, stretch, new Set(['k300']));
+    expect(placed.map((each) => each.key.id)).toEqual([...Array.from({ length: 17 }, (_, i) => `k${i}`), 'k300']);
+    // Panning on does not change it until a step is over.
+    expect(stretchInSight({ ...view, start: 5.1 }, 500)).toEqual(stretch);
+    expect(stretchInSight({ ...view, start: 5.2 }, 500)).not.toEqual(stretch);
   });
-  it('shrinks key poses that have no room', () => {
-    const placed = placeKeys([key('a', 2), key('b', 2.2), key('c', 6)], view, 500, new Set());
-    expect(placed.map((each) => each.compact)).toEqual([false, true, false]);
+  it('gives key poses the width that their neighbours leave', () => {
+    const keys = [key('a', 2), key('b', 2.2), key('c', 6), key('d', 7), key('e', 7.8)];
+    expect(keyWidths(keys, 50)).toEqual([16, 16, 44, 36, 36]);
+    expect(keyWidths([key('a', 1)], 50)).toEqual([52]);
+  });
+  it('never makes more elements than there is room for', () => {
+    const keys = Array.from({ length: 400 }, (_, i) => key(`k${i}`, i * 1.5));
+    const widths = keyWidths(keys, 2);
+    expect(widths.filter((width) => width > 0)).toHaveLength(134);
+    expect(new Set(widths)).toEqual(new Set([16, 0]));
+    const keep = placeKeys(keys, widths, 2, { from: 0, to: 0 }, new Set(['k1']));
+    expect(keep).toEqual([{ key: keys[1], index: 1, width: 16 }]);
   });
   it('thins bars out by doubling', () => {
     expect([50, 10, 1].map((width) => barStep(width, 44))).toEqual([1, 8, 64]);
@@ -77,7 +91,10 @@ describe('shortcuts', () => {
     expect(press('m', { altKey: true })).toEqual([]);
   });
   it('are unique and readable', () => {
-    const combos = SHORTCUTS.flatMap((shortcut) => shortcut.keys);
+    // The pose editor and the timeline share some keys: only one of them is open.
+    const combos = SHORTCUTS.flatMap(({ keys, group }) =>
+      keys.map((combo) => (group === 'Pose editor' ? `posing ${combo}` : combo)),
+    );
     expect(new Set(combos).size).toBe(combos.length);
     expect(combos.map(keyText).every((text) => text.length > 0)).toBe(true);
   });

@@ -220,10 +220,10 @@ export function createState() {
     ripple: signal(true),
     /** Tap tempo under way, or null. */
     tapping: signal<Tapping | null>(null),
-    /** The walk-through: which step is shown, from 0; null = none. */
-    tour: signal<number | null>(null),
     /** A click on every beat. */
     metronome: signal(false),
+    /** How many key poses are copied, ready to be pasted. */
+    keysCopied: signal(0),
     /** What key poses snap to. */
     snap: signal<Snap>('beat'),
     /** The neighbouring key poses as ghosts beside the figure. */

@@ -11,7 +11,7 @@ const SPEEDS = [0.25, 0.5, 0.75, 1, 1.25, 1.5].filter((speed) => speed >= SPEED_
 /** Play, time, loop, speed, volume, zoom, Generate. */
 export function Transport() {
   const store = useStore();
-  const { playing, loop, speed, volume, muted, duration, curvesShown } = store.state;
+  const { playing, loop, speed, volume, muted, duration, curvesShown, followPlayhead } = store.state;
   const off = duration.value === 0;
   return (
     <section class="transport" aria-label="Transport">
@@ -99,6 +99,17 @@ export function Transport() {
         onClick={() => store.toggleCurves()}
       >
         <Icon name="activity" />
+      </button>
+      <button
+        type="button"
+        class="tool wide"
+        disabled={off}
+        aria-pressed={followPlayhead.value}
+        aria-label="Follow the playhead"
+        title={tip('follow', followPlayhead.value ? 'The timeline follows the playhead' : 'Follow the playhead')}
+        onClick={() => store.toggleFollow()}
+      >
+        <Icon name="locate" />
       </button>
       <div class="zoom-tools wide" role="group" aria-label="Zoom">
         <button

@@ -1,6 +1,5 @@
 /** One table of keys: it feeds the bindings, the tooltips and the help overlay. */
 import type { Store } from '../app/store';
-import { chooseProject } from './files';
 
 /** One action and its keys. */
 export interface Shortcut {
@@ -147,7 +146,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   },
   {
     id: 'lock',
-    keys: ['K'],
+    keys: ['Shift+L'],
     label: 'Lock or unlock the selected key poses',
     group: 'Key poses',
     run: (store) => store.toggleLock(),
@@ -266,22 +265,6 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { id: 'undo', keys: ['Mod+Z'], label: 'Undo', group: 'Project', run: (store) => store.undo() },
   { id: 'redo', keys: ['Mod+Shift+Z', 'Mod+Y'], label: 'Redo', group: 'Project', run: (store) => store.redo() },
   {
-    id: 'save',
-    keys: ['Mod+S'],
-    label: 'Save the project with its song',
-    group: 'Project',
-    everywhere: true,
-    run: (store) => void store.saveProject(true),
-  },
-  {
-    id: 'open',
-    keys: ['Mod+O'],
-    label: 'Open a project',
-    group: 'Project',
-    everywhere: true,
-    run: (store) => chooseProject(store),
-  },
-  {
     id: 'generate',
     keys: ['G'],
     label: 'Generate the dance',
@@ -328,7 +311,6 @@ export const SHORTCUTS: readonly Shortcut[] = [
     run: (store) => store.togglePath(),
   },
   { id: 'help', keys: ['?'], label: 'Show the keys', group: 'View', run: (store) => store.toggleHelp() },
-  { id: 'tour', keys: ['H'], label: 'Show the first steps', group: 'View', run: (store) => store.startTour() },
   {
     id: 'escape',
     keys: ['Escape'],
@@ -340,8 +322,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
       else if (store.state.help.value) store.toggleHelp(false);
       else if (store.cancelBlend()) return;
       else if (store.state.draft.value) store.closeDraft();
-      else if (store.state.selection.value.size > 0) store.selectKey(null);
-      else store.endTour();
+      else store.selectKey(null);
     },
   },
 ];
@@ -350,7 +331,7 @@ const mac = typeof navigator !== 'undefined' && /Mac|iPhone|iPad/.test(navigator
 
 /** True when an event is one of a shortcut's keys. */
 export function matches(
-  event: Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'shiftKey' | 'altKey'>,
+  event: Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'shiftKey' | 'altKey'> & { code?: string },
   combo: string,
 ): boolean {
   const parts = combo.split('+').filter((part) => part !== '');
@@ -360,6 +341,8 @@ export function matches(
   if ((event.ctrlKey || event.metaKey) !== modifiers.includes('Mod')) return false;
   const key = event.key === ' ' ? 'Space' : event.key;
   const named = wanted.length > 1 || /^[A-Z]$/.test(wanted);
+  // With Shift a digit types another sign: the key itself tells.
+  if (/^\d$/.test(wanted) && modifiers.includes('Shift')) return event.shiftKey && event.code === `Digit${wanted}`;
   if (!named) return key === wanted; // a printable sign: Shift is part of typing it
   if (event.shiftKey !== modifiers.includes('Shift')) return false;
   return key.toLowerCase() === wanted.toLowerCase();

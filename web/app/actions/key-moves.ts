@@ -52,7 +52,7 @@ export function keyMoves(context: Context, tools: KeyTools) {
   };
 
   return {
-    /** A drag of the selected key poses begins. Returns false when all of them are locked and nothing is copied. */
+    /** A drag of the selected key poses begins. */
     beginMove(): void {
       drag = { keys: state.document.value.keyPoses, ids: state.selection.value, copies: [] };
       history.capture();
@@ -60,13 +60,13 @@ export function keyMoves(context: Context, tools: KeyTools) {
 
     /**
      * The dragged key poses, `seconds` from where they began; the one named by `anchor` snaps unless `exact`, the others keep their
-     * distance in beats. With `copy` the originals stay.
+     * distance in beats. With `copy` the originals stay. Returns where the anchor (or its copy) is now, seconds; null outside a drag.
      */
-    previewMove(seconds: number, anchor: string, exact: boolean, copy = false): void {
-      if (!drag || !history.capturing) return;
+    previewMove(seconds: number, anchor: string, exact: boolean, copy = false): number | null {
+      if (!drag || !history.capturing) return null;
       const { keys, ids } = drag;
       const lead = keys.find((key) => key.id === anchor);
-      if (!lead) return;
+      if (!lead) return null;
       const { grid, duration } = space();
       const wished = Math.min(Math.max(lead.time + seconds, 0), lastKeyTime(duration));
       const free = exact || state.snap.value === 'off';
@@ -84,6 +84,8 @@ export function keyMoves(context: Context, tools: KeyTools) {
       }
       history.preview({ ...history.present, keyPoses: next as KeyPose[] });
       context.sync();
+      const copied = drag.copies[keys.filter((key) => ids.has(key.id)).indexOf(lead)];
+      return next.find((key) => key.id === (copied ?? anchor))?.time ?? null;
     },
 
     /** The drag ends where it is: one step of undo. */
@@ -155,8 +157,10 @@ export function keyMoves(context: Context, tools: KeyTools) {
     /** Remembers the selected key poses for pasting. Returns how many. */
     copyKeys(): number {
       const chosen = chosenKeys();
-      if (chosen.length > 0) clipboard = chosen;
-      if (chosen.length > 0) context.announce(`${chosen.length} key pose${chosen.length === 1 ? '' : 's'} copied.`);
+      if (chosen.length === 0) return 0;
+      clipboard = chosen;
+      state.keysCopied.value = chosen.length;
+      context.announce(`${chosen.length} key pose${chosen.length === 1 ? '' : 's'} copied.`);
       return chosen.length;
     },
 

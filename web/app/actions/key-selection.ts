@@ -42,6 +42,9 @@ export function keySelection({ state }: Context) {
       if (next.size !== now.size || [...next].some((id) => !now.has(id))) state.selection.value = next;
     },
 
+    /** Selects exactly these. */
+    selectOnly: (ids: ReadonlySet<string>) => void (state.selection.value = ids),
+
     /** Selects all key poses. */
     selectAll(): void {
       state.selection.value = new Set(keys().map((key) => key.id));

@@ -29,17 +29,28 @@ export function viewActions({ state, announce }: Context) {
     if (next.start !== now.start || next.pixelsPerSecond !== now.pixelsPerSecond) state.view.value = next;
   };
 
+  const inSight = (time: number) => {
+    const { start, pixelsPerSecond } = state.view.value;
+    return time >= start && time <= start + state.viewWidth.value / pixelsPerSecond;
+  };
+  /** Who scrolls away from the playhead wants to stay there until it comes by. */
+  let lookingElsewhere = false;
+  const look = (start: number, pixelsPerSecond: number) => {
+    set(start, pixelsPerSecond);
+    lookingElsewhere = !inSight(state.time.value);
+  };
+
   return {
     /** Camera: follow the dancer or stay. */
     toggleCamera: () => (state.cameraFollows.value = !state.cameraFollows.value),
     /** Camera: back to the opening view. */
     frameFigure: () => (state.frameRequests.value += 1),
-    setView: set,
+    setView: look,
     /** Zooms about a time that stays where it is on screen. */
     zoomAt(factor: number, time: number): void {
       const { start, pixelsPerSecond } = state.view.value;
       const scale = Math.min(Math.max(pixelsPerSecond * factor, fitScale()), Math.max(MAX_ZOOM, fitScale()));
-      set(time - ((time - start) * pixelsPerSecond) / scale, scale);
+      look(time - ((time - start) * pixelsPerSecond) / scale, scale);
     },
     /** Zooms about the playhead, or the middle when it is out of sight. */
     zoom(factor: number): void {
@@ -50,9 +61,23 @@ export function viewActions({ state, announce }: Context) {
     },
     /** Shows the whole song. */
     fit: () => set(-Infinity, 0),
+    /** Zooms to the selected key poses; without two of them to the loop, else to the whole song. */
+    showSelection(): void {
+      const chosen = state.document.value.keyPoses.filter((key) => state.selection.value.has(key.id));
+      const loop = state.loop.value;
+      const [start, end] =
+        chosen.length > 1 ? [chosen[0].time, chosen[chosen.length - 1].time] : loop ? [loop.start, loop.end] : [0, 0];
+      if (end <= start) {
+        this.fit();
+        return;
+      }
+      const scale = Math.max(1, state.viewWidth.value - 4 * VIEW_PADDING) / (end - start);
+      const shown = Math.min(Math.max(scale, fitScale()), MAX_ZOOM);
+      look((start + end) / 2 - state.viewWidth.value / shown / 2, shown);
+    },
     scrollBy: (pixels: number) => {
       const { start, pixelsPerSecond } = state.view.value;
-      set(start + pixels / pixelsPerSecond, pixelsPerSecond);
+      look(start + pixels / pixelsPerSecond, pixelsPerSecond);
     },
     /** Takes the width of the timeline; a view that was never set shows some 24 seconds. */
     resizeView(width: number): void {
@@ -72,7 +97,12 @@ export function viewActions({ state, announce }: Context) {
     },
     /** While playing the view turns its page when the playhead leaves it. */
     followTime(time: number): void {
+      if (!state.playing.value) lookingElsewhere = false;
       if (!state.followPlayhead.value || !state.playing.value) return;
+      if (lookingElsewhere) {
+        lookingElsewhere = !inSight(time);
+        return;
+      }
       const { start, pixelsPerSecond } = state.view.value;
       const span = state.viewWidth.value / pixelsPerSecond;
       if (time < start || time > start + span * (1 - PAGE_MARGIN / 2)) set(time - span * PAGE_MARGIN, pixelsPerSecond);
@@ -85,7 +115,14 @@ export function viewActions({ state, announce }: Context) {
       state.snap.value = next;
       announce(next === 'off' ? 'Snapping off.' : `Snaps to ${next === 'half' ? 'half beats' : `${next}s`}.`);
     },
-    toggleFollow: () => (state.followPlayhead.value = !state.followPlayhead.value),
+    /** The timeline follows the playhead while it plays, from now on. */
+    toggleFollow(): void {
+      const follow = !state.followPlayhead.value;
+      state.followPlayhead.value = follow;
+      lookingElsewhere = false;
+      if (follow) this.revealTime(state.time.value);
+      announce(follow ? 'The timeline follows the playhead.' : 'The timeline stays where it is.');
+    },
     showPanel: (panel: Panel) => (state.panel.value = panel),
     /** Kinetic velocity against the music on the timeline: shown or hidden. */
     toggleCurves: (open = !state.curvesShown.value) => (state.curvesShown.value = open),

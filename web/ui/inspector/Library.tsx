@@ -5,6 +5,7 @@ import { flyToLane, startPoseDrag } from '../pose-drag';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 import { PosePicture } from '../thumbs';
+import { SelectedKeys } from '../timeline/SelectedKeys';
 
 const STANDING = new Array<number>(72).fill(0);
 
@@ -25,7 +26,7 @@ export function Library() {
 
   return (
     <>
-      <Selected />
+      <SelectedKeys />
       <div class="pose-actions">
         <button type="button" class="secondary" onClick={() => store.editPose(STANDING)}>
           <Icon name="person" />
@@ -75,12 +76,12 @@ export function Library() {
 
 function Tile({ pose }: { pose: LibraryPose }) {
   const store = useStore();
-  const place = (element: HTMLElement) => {
+  const place = (element: HTMLElement, exact: boolean) => {
     if (store.state.duration.value === 0) {
       store.notify('info', 'Drop a song first: poses are placed on its beats.');
       return;
     }
-    const id = store.addKey(pose.rotations, store.state.time.value, { name: pose.name });
+    const id = store.addKey(pose.rotations, store.state.time.value, { name: pose.name, exact });
     flyToLane(store, element, id);
   };
   return (
@@ -92,49 +93,12 @@ function Tile({ pose }: { pose: LibraryPose }) {
         title={`${pose.name}. Drag it onto the timeline, or click to add it at the playhead’s nearest beat.`}
         onPointerDown={(event) => startPoseDrag(event, pose, store)}
         onClick={(event) => {
-          if (!event.currentTarget.dataset.dragged) place(event.currentTarget);
+          if (!event.currentTarget.dataset.dragged) place(event.currentTarget, event.altKey);
         }}
       >
         <PosePicture rotations={pose.rotations} />
         <span>{pose.name}</span>
       </button>
     </li>
-  );
-}
-
-/** The key poses selected on the timeline and what can be done with them. */
-function Selected() {
-  const store = useStore();
-  const { selection, document } = store.state;
-  const chosen = document.value.keyPoses.filter((key) => selection.value.has(key.id));
-  if (chosen.length === 0) return null;
-  const [first] = chosen;
-  return (
-    <section class="selected" aria-label="Selected key poses">
-      <div class="selected-picture">
-        <PosePicture rotations={first.rotations} />
-      </div>
-      <div class="selected-text">
-        <strong>{chosen.length === 1 ? (first.name ?? 'Key pose') : `${chosen.length} key poses`}</strong>
-        <small>{chosen.length === 1 ? `at ${first.time.toFixed(2)} s` : 'move together'}</small>
-      </div>
-      {chosen.length === 1 && (
-        <button
-          type="button"
-          class="tool"
-          aria-label="Edit pose"
-          title="Edit pose (double-click it)"
-          onClick={() => store.editKey(first.id)}
-        >
-          <Icon name="pencil" />
-        </button>
-      )}
-      <button type="button" class="tool" aria-label="Mirror" title={tip('mirror')} onClick={() => store.mirrorKeys()}>
-        <Icon name="flip" />
-      </button>
-      <button type="button" class="tool" aria-label="Delete" title={tip('remove')} onClick={() => store.deleteKeys()}>
-        <Icon name="trash" />
-      </button>
-    </section>
   );
 }

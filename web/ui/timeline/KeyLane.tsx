@@ -1,109 +1,140 @@
-import { signal } from '@preact/signals';
+import { useComputed, useSignalEffect } from '@preact/signals';
+import type { VNode } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
-import { barAndBeat } from '../../app/snapping';
-import type { KeyPose } from '../../core/types';
 import { useStore } from '../store-context';
-import { PosePicture } from '../thumbs';
-import { COMPACT_WIDTH, KEY_WIDTH, LANES, placeKeys, timeToX } from './geometry';
-import { beginKeyDrag } from './key-drag';
+import { barAndBeat, clockTime } from '../../app/snapping';
+import { keyWidths, LANES, placeKeys, stretchInSight, timeToX, type PlacedKey } from './geometry';
+import { KeyButton } from './KeyButton';
+import { band, dragHint, focusedKey } from './lane-signals';
 import { dropTime } from './surface';
 
-/** The key pose that has the keyboard, so that it stays drawn and focused when it moves past others. */
-const focused = signal<string | null>(null);
+/** An element and what it was made from; the same again is not rendered again. */
+interface Made {
+  from: readonly unknown[];
+  element: VNode;
+}
 
 /** Key poses as a list of buttons, placed on their times. */
 export function KeyLane() {
   const store = useStore();
   const { state } = store;
-  const keys = state.document.value.keyPoses;
   const list = useRef<HTMLDivElement>(null);
-  const keep = new Set(focused.value ? [focused.value] : []);
-  const placed = placeKeys(keys, state.view.value, state.viewWidth.value, keep);
-  const landing = dropTime.value;
+  const rail = useRef<HTMLDivElement>(null);
+  const made = useRef(new Map<string, Made>());
+  const scale = useComputed(() => state.view.value.pixelsPerSecond);
+  // As text, so that an equal stretch is no change.
+  const stretch = useComputed(() => JSON.stringify(stretchInSight(state.view.value, state.viewWidth.value)));
+  const keys = useComputed(() => state.document.value.keyPoses);
+  const widths = useComputed(() => keyWidths(keys.value, scale.value));
+
+  const selection = state.selection.value;
+  const focused = focusedKey.value;
+  const placed = placeKeys(
+    keys.value,
+    widths.value,
+    scale.value,
+    JSON.parse(stretch.value),
+    new Set(focused ? [focused] : []),
+  );
+  // One stop for the Tab key: the focused one, else the first selected, else the first in sight.
+  const stop = placed.find(({ key }) => key.id === focused) ?? placed.find(({ key }) => selection.has(key.id));
+  const stopId = (stop ?? placed[0])?.key.id;
+
+  const seen = new Map<string, Made>();
+  const buttons = placed.map((place) => {
+    const from = [place.key, place.index, place.width, selection.has(place.key.id), place.key.id === stopId];
+    const count = keys.value.length;
+    const all = [...from, count, state.grid.value];
+    const before = made.current.get(place.key.id);
+    const same = before !== undefined && before.from.every((part, i) => part === all[i]);
+    const next = same ? before : { from: all, element: item(place, count, from[3] as boolean, from[4] as boolean) };
+    seen.set(place.key.id, next);
+    return next.element;
+  });
+  made.current = seen;
+
+  // Panning only moves the rail, zooming only changes its scale: nothing is rendered or laid out.
+  useSignalEffect(() => {
+    const { start, pixelsPerSecond } = state.view.value;
+    rail.current?.style.setProperty('transform', `translateX(${-start * pixelsPerSecond}px)`);
+  });
+  useSignalEffect(() => {
+    rail.current?.style.setProperty('--scale', String(scale.value));
+  });
 
   useLayoutEffect(() => {
-    // Moving an element in the list takes its focus away: give it back.
-    const id = focused.value;
-    if (!id || document.activeElement !== document.body) return;
-    list.current?.querySelector<HTMLElement>(`[data-key="${CSS.escape(id)}"]`)?.focus({ preventScroll: true });
+    // Moving an element in the list takes its focus away, and a walk along the list gives it to another: put it there.
+    const id = focusedKey.value;
+    if (!id || !(document.activeElement === document.body || list.current?.contains(document.activeElement))) return;
+    const button = list.current?.querySelector<HTMLElement>(`[data-key="${CSS.escape(id)}"]`);
+    if (button && button !== document.activeElement) button.focus({ preventScroll: true });
   });
 
   return (
     <div
       class="key-lane"
       role="list"
-      aria-label={`Key poses, ${keys.length}`}
+      aria-label={`Key poses, ${keys.value.length}`}
       ref={list}
       style={{ top: `${LANES.keys.top}px`, height: `${LANES.keys.height}px` }}
     >
-      {keys.length === 0 && landing === null && state.duration.value > 0 && (
+      {keys.value.length === 0 && dropTime.value === null && state.duration.value > 0 && (
         <p class="lane-hint">Drag a pose here, or choose one in the list: it lands on a beat.</p>
       )}
-      {placed.map(({ key, x, compact }) => (
-        <KeyButton key={key.id} pose={key} x={x} compact={compact} />
-      ))}
-      {landing !== null && (
-        <div class="landing" style={{ transform: `translateX(${timeToX(state.view.value, landing)}px)` }} />
-      )}
+      <div class="key-rail" ref={rail} role="presentation">
+        {buttons}
+      </div>
+      <Marks />
     </div>
   );
 }
 
-function KeyButton({ pose, x, compact }: { pose: KeyPose; x: number; compact: boolean }) {
-  const store = useStore();
-  const { state } = store;
-  const chosen = state.selection.value.has(pose.id);
-  const place = barAndBeat(state.grid.value, pose.time);
-  const name = pose.name ?? 'Key pose';
-  const where = `${place ? `bar ${place.bar} beat ${place.beat}, ` : ''}${pose.time.toFixed(2)} s`;
-  const width = compact ? COMPACT_WIDTH : KEY_WIDTH;
-
-  const onKeyDown = (event: KeyboardEvent) => {
-    const act: Record<string, () => void> = {
-      ArrowLeft: () => store.nudgeKeys(-1, event.shiftKey ? 'frame' : 'beat'),
-      ArrowRight: () => store.nudgeKeys(1, event.shiftKey ? 'frame' : 'beat'),
-      Delete: () => store.deleteKeys(),
-      Backspace: () => store.deleteKeys(),
-    };
-    if (event.key === 'Enter' && event.shiftKey) act.Enter = () => store.deleteKeys();
-    else if (event.key === 'Enter') act.Enter = () => store.editKey(pose.id);
-    const run = act[event.key];
-    if (!run) return;
-    event.preventDefault();
-    event.stopPropagation();
-    if (!chosen) store.selectKey(pose.id);
-    run();
-  };
-
+function item({ key, index, width }: PlacedKey, count: number, chosen: boolean, tabStop: boolean): VNode {
   return (
-    <div role="listitem" class="key-item" style={{ transform: `translateX(${x - width / 2}px)` }}>
-      <button
-        type="button"
-        class={`key-pose ${chosen ? 'chosen' : ''} ${compact ? 'compact' : ''}`}
-        data-grab
-        data-key={pose.id}
-        aria-pressed={chosen}
-        aria-label={`${name}, ${where}`}
-        title={`${name}, ${where}. Arrows move it, Enter edits it, Delete deletes it.`}
-        style={{ width: `${width}px` }}
-        onPointerDown={(event) => beginKeyDrag(event, pose.id, store)}
-        onDblClick={() => store.editKey(pose.id)}
-        onKeyDown={onKeyDown}
-        onFocus={() => {
-          focused.value = pose.id;
-          if (!chosen) store.selectKey(pose.id);
-        }}
-        onBlur={() => {
-          if (focused.value === pose.id && document.hasFocus()) queueMicrotask(() => releaseFocus(pose.id));
-        }}
-      >
-        {compact ? <span class="diamond" /> : <PosePicture rotations={pose.rotations} />}
-      </button>
+    <div
+      key={key.id}
+      role="listitem"
+      class="key-item"
+      aria-posinset={index + 1}
+      aria-setsize={count}
+      style={{ '--time': key.time, width: `${width}px` }}
+    >
+      <KeyButton pose={key} width={width} chosen={chosen} tabStop={tabStop} />
     </div>
   );
 }
 
-/** Forgets the focused key pose once something else really has the focus. */
-function releaseFocus(id: string): void {
-  if (focused.value === id && document.activeElement !== document.body) focused.value = null;
+/** What shows while something is dragged: where a pose lands, what is being selected, where the dragged key pose is. */
+function Marks() {
+  const { state } = useStore();
+  const landing = dropTime.value;
+  const chosen = band.value;
+  const hint = dragHint.value;
+  if (landing === null && !chosen && !hint) return null;
+  const view = state.view.value;
+  const at = landing ?? hint?.time ?? 0;
+  const place = barAndBeat(state.grid.value, at);
+  return (
+    <>
+      {landing !== null && <div class="landing" style={{ transform: `translateX(${timeToX(view, landing)}px)` }} />}
+      {chosen && (
+        <div
+          class="key-band"
+          style={{
+            transform: `translateX(${timeToX(view, chosen.start)}px)`,
+            width: `${(chosen.end - chosen.start) * view.pixelsPerSecond}px`,
+          }}
+        />
+      )}
+      {(landing !== null || hint) && (
+        <div class="drag-hint" style={{ transform: `translateX(${timeToX(view, at)}px)` }}>
+          <span>
+            {hint?.copy && <b>+ </b>}
+            {place ? `${place.bar}.${place.beat}` : clockTime(at)}
+            <small> {at.toFixed(2)} s</small>
+          </span>
+        </div>
+      )}
+    </>
+  );
 }

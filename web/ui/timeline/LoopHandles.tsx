@@ -1,4 +1,4 @@
-import { clockTime, nearestBeat, stepBeat } from '../../app/snapping';
+import { clockTime, stepBeat } from '../../app/snapping';
 import { useStore } from '../store-context';
 import { timeToX } from './geometry';
 import { timeAtX } from './surface';
@@ -22,7 +22,7 @@ export function LoopHandles() {
     handle.setPointerCapture(event.pointerId);
     const drag = (next: PointerEvent) => {
       const time = timeAtX(store, next.clientX);
-      const target = next.altKey ? time : nearestBeat(grid.value, time);
+      const target = store.snapTime(time, next.altKey);
       const now = store.state.loop.value;
       if (now && (end === 'start' ? target < now.end : target > now.start)) move(end, target);
     };

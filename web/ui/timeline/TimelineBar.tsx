@@ -1,4 +1,5 @@
 import { BeatTools } from './BeatTools';
+import { KeyTools } from './KeyTools';
 import { RangeTools } from './RangeTools';
 import { SnapTools } from './SnapTools';
 
@@ -9,6 +10,7 @@ export function TimelineBar() {
       <SnapTools />
       <BeatTools />
       <RangeTools />
+      <KeyTools />
     </div>
   );
 }

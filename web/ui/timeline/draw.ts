@@ -3,7 +3,7 @@ import { lowerBound } from '../../app/snapping';
 import type { LoopRange } from '../../audio/player';
 import type { TimelineView } from '../../app/state';
 import type { BeatGrid, Features, KeyPose, Waveform } from '../../core/types';
-import { barStep, LANES, LANES_HEIGHT, timeToX, xToTime } from './geometry';
+import { barStep, keyWidths, LANES, LANES_HEIGHT, timeToX, xToTime } from './geometry';
 
 /** What is drawn. */
 export interface Picture {
@@ -200,13 +200,19 @@ function drawOnsets(brush: Brush, { features, view, width }: Picture): void {
   }
 }
 
+/** A line from each key pose up to its beat; key poses that have no room for an element are a mark on it. */
 function drawKeyStems(brush: Brush, { keys, view, width, selection }: Picture): void {
-  for (const key of keys) {
+  const widths = keyWidths(keys, view.pixelsPerSecond);
+  const middle = LANES.keys.top + LANES.keys.height / 2;
+  keys.forEach((key, i) => {
     const x = Math.round(timeToX(view, key.time));
-    if (x < -1 || x > width) continue;
+    if (x < -8 || x > width + 8) return;
     brush.fillStyle = selection.has(key.id) ? COLOURS.keyChosen : COLOURS.key;
     brush.fillRect(x, LANES.wave.top, 1, LANES.keys.top - LANES.wave.top + 4);
-  }
+    if (widths[i] > 0) return;
+    const tall = selection.has(key.id) ? 14 : 8;
+    brush.fillRect(x - 1, middle - tall, 2, 2 * tall);
+  });
 }
 
 function drawDanced(brush: Brush, { danced, stale, generating, view, width, duration }: Picture): void {
@@ -215,5 +221,8 @@ function drawDanced(brush: Brush, { danced, stale, generating, view, width, dura
   if (end <= 0) return;
   brush.fillStyle = stale && !generating ? COLOURS.motionDim : COLOURS.motion;
   const from = Math.max(0, timeToX(view, 0));
-  brush.fillRect(from, top + 2, end - from, height - 4);
+  brush.fillRect(from, top + height - 4, end - from, 3);
+  brush.globalAlpha = 0.22;
+  brush.fillRect(from, top + 1, end - from, height - 5);
+  brush.globalAlpha = 1;
 }

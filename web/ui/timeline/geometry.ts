@@ -1,6 +1,5 @@
 /** Where things are on the timeline: pure functions of the view. */
 import type { TimelineView } from '../../app/state';
-import { lowerBound } from '../../app/snapping';
 import type { KeyPose } from '../../core/types';
 
 /** The lanes, CSS pixels, top to bottom. */
@@ -19,10 +18,14 @@ export const LANES = {
 } as const;
 /** Height of the lanes that are always shown. */
 export const LANES_HEIGHT = 188;
-/** Width of a key pose's thumbnail. */
+/** Widths that a key pose's thumbnail can have, CSS pixels, ascending. */
+const KEY_WIDTHS = [28, 36, 44, 52];
+/** Width of a key pose's thumbnail where there is room. */
 export const KEY_WIDTH = 52;
 /** Width of a key pose without room for a thumbnail. */
 export const COMPACT_WIDTH = 16;
+/** Key poses without a thumbnail that are closer to the one before are only drawn, CSS pixels. */
+const MIN_MARK_GAP = 9;
 
 /** Pixels from the left edge. */
 export function timeToX(view: TimelineView, time: number): number {
@@ -34,39 +37,66 @@ export function xToTime(view: TimelineView, x: number): number {
   return view.start + x / view.pixelsPerSecond;
 }
 
+/** How wide each key pose is at a scale: a thumbnail's width, COMPACT_WIDTH for a diamond, 0 for a mark that is only drawn. */
+export function keyWidths(keys: readonly KeyPose[], pixelsPerSecond: number): number[] {
+  let mark = -Infinity;
+  return keys.map((key, i) => {
+    const before = i > 0 ? key.time - keys[i - 1].time : Infinity;
+    const after = i + 1 < keys.length ? keys[i + 1].time - key.time : Infinity;
+    const room = Math.min(before, after) * pixelsPerSecond - 2;
+    const picture = KEY_WIDTHS.findLast((width) => width <= room);
+    const x = key.time * pixelsPerSecond;
+    if (!picture && x - mark < MIN_MARK_GAP) return 0;
+    mark = x;
+    return picture ?? COMPACT_WIDTH;
+  });
+}
+
 /** A key pose to draw. */
 export interface PlacedKey {
   key: KeyPose;
-  x: number;
-  /** No room for the thumbnail: a small diamond. */
-  compact: boolean;
+  /** Its place in the list. */
+  index: number;
+  width: number;
+}
+
+/** A stretch of the timeline that is kept ready, in pixels from the song's start at the scale in force. */
+export interface Stretch {
+  from: number;
+  to: number;
+}
+
+/** The timeline renders anew when the view has moved by this much, CSS pixels. */
+const STRETCH_STEP = 256;
+
+/** What is in sight and a little on both sides; the same for neighbouring views, so that panning renders rarely. */
+export function stretchInSight(view: TimelineView, width: number): Stretch {
+  const page = Math.floor((view.start * view.pixelsPerSecond) / STRETCH_STEP);
+  return {
+    from: page * STRETCH_STEP - KEY_WIDTH,
+    to: (page + 1) * STRETCH_STEP + width + KEY_WIDTH,
+  };
 }
 
 /**
- * The key poses in sight, and those to keep although out of sight (focused, dragged).
+ * The key poses that are elements: those in a stretch, and those to keep although out of sight or without room (focused, dragged).
  *
  * @param keys - Ascending in time.
+ * @param widths - Of {@link keyWidths} at the same scale.
  */
 export function placeKeys(
   keys: readonly KeyPose[],
-  view: TimelineView,
-  width: number,
+  widths: readonly number[],
+  pixelsPerSecond: number,
+  stretch: Stretch,
   keep: ReadonlySet<string>,
 ): PlacedKey[] {
-  if (view.pixelsPerSecond <= 0) return [];
-  const times = keys.map((key) => key.time);
-  const margin = KEY_WIDTH / view.pixelsPerSecond;
-  const from = lowerBound(times, view.start - margin);
-  const to = lowerBound(times, xToTime(view, width) + margin);
+  if (pixelsPerSecond <= 0) return [];
   const placed: PlacedKey[] = [];
-  let edge = -Infinity;
   keys.forEach((key, index) => {
-    const inSight = index >= from && index < to;
-    if (!inSight && !keep.has(key.id)) return;
-    const x = timeToX(view, key.time);
-    const compact = x - KEY_WIDTH / 2 < edge - KEY_WIDTH * 0.45;
-    if (!compact) edge = x + KEY_WIDTH / 2;
-    placed.push({ key, x, compact });
+    const x = key.time * pixelsPerSecond;
+    const shown = widths[index] > 0 && x >= stretch.from && x < stretch.to;
+    if (shown || keep.has(key.id)) placed.push({ key, index, width: widths[index] || COMPACT_WIDTH });
   });
   return placed;
 }

@@ -1,63 +1,117 @@
 /** Dragging key poses along the timeline. */
 import type { Store } from '../../app/store';
+import { dragHint } from './lane-signals';
 import { surface } from './surface';
 
 const DRAG_THRESHOLD = { mouse: 4, touch: 8 };
+/** A finger that rests this long adds to the selection, or takes out of it, milliseconds. */
+const LONG_PRESS = 450;
 /** Near the edge the view scrolls, pixels per move. */
 const EDGE = 28;
 const EDGE_STEP = 10;
 
-/** Press on a key pose: select; move: drag all selected; Escape: never happened. */
+/** The key pose that a pointer is on, while it is. */
+export const pressedKey: { current: string | null } = { current: null };
+
+/** Near an edge of the timeline the view goes on under a drag. */
+export function scrollAtEdge(store: Store, clientX: number): void {
+  const box = surface.value?.getBoundingClientRect();
+  if (box && clientX < box.left + EDGE) store.scrollBy(-EDGE_STEP);
+  if (box && clientX > box.right - EDGE) store.scrollBy(EDGE_STEP);
+}
+
+/**
+ * Press on a key pose: select (with Ctrl or Cmd one more, with Shift up to it); move: drag all selected, with Ctrl or Cmd copies of
+ * them, with Alt off the grid; Escape or a second finger: never happened.
+ */
 export function beginKeyDrag(event: PointerEvent, id: string, store: Store): void {
   if (event.button !== 0) return;
   event.stopPropagation();
-  const extend = event.shiftKey || event.ctrlKey || event.metaKey;
+  const { pointerId, clientX: startX, clientY: startY } = event;
+  const touch = event.pointerType === 'touch';
+  const toggle = event.ctrlKey || event.metaKey;
   const already = store.state.selection.value.has(id);
-  if (extend) store.selectKey(id, true);
-  else if (!already) store.selectKey(id);
-  const startX = event.clientX;
+  pressedKey.current = id;
+  if (event.shiftKey) store.selectTo(id);
+  else if (toggle && !already) store.selectKey(id, true);
+  else if (!toggle && !already && !touch) store.selectKey(id);
   const startView = store.state.view.value.start;
-  const threshold = event.pointerType === 'touch' ? DRAG_THRESHOLD.touch : DRAG_THRESHOLD.mouse;
-  const { pointerId } = event;
   let dragging = false;
+  let held = false;
+  let at = startX;
 
+  const preview = (modifiers: { altKey: boolean; ctrlKey: boolean; metaKey: boolean }) => {
+    const { start, pixelsPerSecond } = store.state.view.value;
+    const copy = modifiers.ctrlKey || modifiers.metaKey;
+    const seconds = (at - startX) / pixelsPerSecond + start - startView;
+    const time = store.previewMove(seconds, id, modifiers.altKey, copy);
+    dragHint.value = time === null ? null : { time, copy };
+  };
   const move = (next: PointerEvent) => {
     if (next.pointerId !== pointerId) return;
+    at = next.clientX;
     if (!dragging) {
-      if (Math.abs(next.clientX - startX) < threshold) return;
+      const far = touch ? Math.hypot(at - startX, next.clientY - startY) : Math.abs(at - startX);
+      if (far < (touch ? DRAG_THRESHOLD.touch : DRAG_THRESHOLD.mouse)) return;
+      clearTimeout(timer);
       dragging = true;
       if (!store.state.selection.value.has(id)) store.selectKey(id);
       store.beginMove();
     }
-    const box = surface.value?.getBoundingClientRect();
-    if (box && next.clientX < box.left + EDGE) store.scrollBy(-EDGE_STEP);
-    if (box && next.clientX > box.right - EDGE) store.scrollBy(EDGE_STEP);
-    const { start, pixelsPerSecond } = store.state.view.value;
-    store.previewMove((next.clientX - startX) / pixelsPerSecond + start - startView, id, next.altKey);
+    scrollAtEdge(store, at);
+    preview(next);
   };
   const end = (next: PointerEvent) => {
     if (next.pointerId !== pointerId) return;
     stop();
-    if (!dragging) {
-      if (already && !extend) store.selectKey(id);
-    } else if (next.type === 'pointerup') store.commitMove();
-    else store.discardMove();
+    if (dragging && next.type === 'pointerup') store.commitMove();
+    else if (dragging) store.discardMove();
+    else if (next.type !== 'pointerup' || held || event.shiftKey) return;
+    else if (toggle && already) store.selectKey(id, true);
+    else if (!toggle) store.selectKey(id);
   };
-  const escape = (next: KeyboardEvent) => {
-    if (next.key !== 'Escape' || !dragging) return;
-    next.preventDefault();
+  const cancel = () => {
     stop();
-    store.discardMove();
+    if (dragging) store.discardMove();
+  };
+  const key = (next: KeyboardEvent) => {
+    if (!dragging) return;
+    if (next.type === 'keydown' && next.key === 'Escape') {
+      next.preventDefault();
+      next.stopPropagation();
+      cancel();
+    } else if (['Alt', 'Control', 'Meta'].includes(next.key)) {
+      next.preventDefault();
+      preview(next);
+    }
+  };
+  const secondFinger = (next: PointerEvent) => {
+    if (touch && next.pointerId !== pointerId) cancel();
   };
   const stop = () => {
+    clearTimeout(timer);
+    dragHint.value = null;
     window.removeEventListener('pointermove', move);
     window.removeEventListener('pointerup', end);
     window.removeEventListener('pointercancel', end);
-    window.removeEventListener('keydown', escape, true);
+    window.removeEventListener('pointerdown', secondFinger, true);
+    window.removeEventListener('keydown', key, true);
+    window.removeEventListener('keyup', key, true);
+    // The focus that a tap brings comes after it.
+    setTimeout(() => (pressedKey.current = pressedKey.current === id ? null : pressedKey.current), 0);
   };
+  const timer = touch
+    ? setTimeout(() => {
+        held = true;
+        store.selectKey(id, true);
+        navigator.vibrate?.(10);
+      }, LONG_PRESS)
+    : undefined;
   // On the window, not the button: the list may reorder under the pointer, which would end a capture.
   window.addEventListener('pointermove', move);
   window.addEventListener('pointerup', end);
   window.addEventListener('pointercancel', end);
-  window.addEventListener('keydown', escape, true);
+  window.addEventListener('pointerdown', secondFinger, true);
+  window.addEventListener('keydown', key, true);
+  window.addEventListener('keyup', key, true);
 }

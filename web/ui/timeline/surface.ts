@@ -1,7 +1,6 @@
 /** Where the timeline is on the page, for drags that come from elsewhere. */
 import { signal } from '@preact/signals';
 import type { Store } from '../../app/store';
-import { nearestBeat } from '../../app/snapping';
 import { timeToX, xToTime } from './geometry';
 
 /** The element whose left edge is the view's start. */
@@ -13,10 +12,10 @@ export const dropTime = signal<number | null>(null);
 export function timeAtPoint(store: Store, clientX: number, clientY: number, exact: boolean): number | null {
   const box = surface.value?.getBoundingClientRect();
   if (!box || clientX < box.left || clientX > box.right || clientY < box.top || clientY > box.bottom) return null;
-  const { view, duration, grid } = store.state;
+  const { view, duration } = store.state;
   const time = xToTime(view.value, clientX - box.left);
   if (time < 0 || time > duration.value) return null;
-  return exact ? time : nearestBeat(grid.value, time);
+  return store.snapTime(time, exact);
 }
 
 /** The time at a page coordinate, inside the song. */
