@@ -130,21 +130,41 @@ export function clampRotation<T extends Writable = number[]>(
   const v = s.insideV + (s.v - s.insideV) * swingShare;
   const twist = s.insideTwist + (s.twist - s.insideTwist) * twistShare;
 
-  const { axis } = limit;
+  // On the side of the quaternions' sphere where the given rotation is.
+  const r = join(limit, u, v, twist);
+  const sign = r[0] * q[0] + r[1] * q[1] + r[2] * q[2] + r[3] * q[3] < 0 ? -1 : 1;
+  for (let i = 0; i < 4; i++) out[i] = sign * r[i];
+  return out;
+}
+
+/** The rotation of a swing and a twist, degrees. */
+function join({ axis }: JointLimit, u: number, v: number, twist: number): number[] {
   const [a, b] = ACROSS[axis];
   const angle = Math.hypot(u, v) / DEGREES;
   const scale = angle > 1e-9 ? Math.sin(angle / 2) / angle / DEGREES : 0.5 / DEGREES;
   const [x, y, h] = [u * scale, v * scale, Math.cos(angle / 2)];
   const [c, d] = [Math.cos(twist / 2 / DEGREES), Math.sin(twist / 2 / DEGREES)];
   const handed = axis === Y ? -1 : 1;
-  // swing x twist, on the side of the sphere where the given rotation is.
-  const sign =
-    q[a] * (c * x + handed * d * y) + q[b] * (c * y - handed * d * x) + q[axis] * h * d + q[3] * h * c < 0 ? -1 : 1;
-  out[a] = sign * (c * x + handed * d * y);
-  out[b] = sign * (c * y - handed * d * x);
-  out[axis] = sign * h * d;
-  out[3] = sign * h * c;
-  return out;
+  const q = [0, 0, 0, h * c];
+  q[a] = c * x + handed * d * y;
+  q[b] = c * y - handed * d * x;
+  q[axis] = h * d;
+  return q;
+}
+
+/** Rotations spread over a joint's range: half-way and nearly all the way out to each corner of its swing, with five twists each. */
+export function directions(joint: number): number[][] {
+  const limit = JOINT_LIMITS[joint];
+  if (!limit) return [];
+  const { swing, twist } = limit;
+  const [x, y] = [0, 1].map((i) => swing.reduce((sum, corner) => sum + corner[i], 0) / swing.length);
+  return [0.5, 0.9].flatMap((out) =>
+    [0.5, 0.25, 0.75, 0.05, 0.95].flatMap((share) =>
+      swing.map(([u, v]) =>
+        join(limit, x + (u - x) * out, y + (v - y) * out, twist[0] + share * (twist[1] - twist[0])),
+      ),
+    ),
+  );
 }
 
 /**
