@@ -58,7 +58,8 @@ describe('the key strength', () => {
     expect(requests).toHaveLength(1);
     expect(finish).toHaveBeenCalledTimes(1);
     const { motion, uncorrected } = shown();
-    expect(saved).toHaveBeenLastCalledWith({ hash: expect.any(String), motion, uncorrected, keyStrength: 0.25 });
+    const kept = { hash: expect.any(String) as string, motion, uncorrected, keyStrength: 0.25, byDials: true };
+    expect(saved).toHaveBeenLastCalledWith(expect.objectContaining(kept));
   });
 
   it('follows undo and redo', async () => {

@@ -3,6 +3,7 @@ import type { UncorrectedDance } from '../core/finish';
 import type { BeatGrid, Features, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
 import type { Backend, DanceRequest } from '../workers/protocol';
 import type { ProjectDocument } from '../core/document';
+import type { DanceInputs } from './recipe';
 
 /** A song as the browser decoded it. */
 export interface DecodedSong {
@@ -81,6 +82,10 @@ export interface SavedDance {
   motion: Motion;
   uncorrected?: UncorrectedDance;
   keyStrength?: number;
+  /** True when the document's own dials made it. */
+  byDials?: boolean;
+  /** What it was made from; where this is missing, what the document holds now. */
+  inputs?: DanceInputs;
 }
 
 /** The browser's own storage; every method tolerates its absence by rejecting. */

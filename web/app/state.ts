@@ -2,7 +2,7 @@
 import { computed, signal } from '@preact/signals';
 import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
-import type { Dials, ProjectDocument, SongReference } from '../core/document';
+import type { ProjectDocument, SongReference } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
 import type { Limb } from '../core/pose-tools';
 import type { TradeOffPoint } from '../core/report-curves';
@@ -19,6 +19,7 @@ import type {
 } from '../core/types';
 import type { LoopRange } from '../audio/player';
 import type { DanceResult, LoadProgress, ModelInfo } from './ports';
+import { madeFrom, type DanceInputs } from './recipe';
 import type { DanceReport } from './report';
 
 /** The song at hand. Its parts arrive one after another: sound, waveform, first beats, everything. */
@@ -41,13 +42,6 @@ export interface SongJob {
   fraction: number;
 }
 
-/** What a dance was made from, to tell whether it is still up to date. */
-export interface DanceInputs {
-  keyPoses: readonly KeyPose[];
-  grid: BeatGrid | null;
-  dials: Dials;
-}
-
 /** The dance on stage. */
 export interface Dance {
   motion: Motion;
@@ -65,11 +59,21 @@ export interface Dance {
 
 /** Consistency against smoothness of a dance, as far as it is worked out. */
 export interface TradeOff {
-  /** The dance that it is of. */
+  /** The dance that it is of, and the key poses with the strengths that it is for. */
   of: UncorrectedDance;
+  keyPoses: readonly KeyPose[];
   /** Ascending in strength. */
   points: TradeOffPoint[];
   complete: boolean;
+}
+
+/** A dance held for comparison (A) while the visitor works on (B). */
+export interface Comparison {
+  /** As it was when A was held. */
+  document: ProjectDocument;
+  dance: Dance;
+  /** Which of the two is on stage. */
+  shown: 'a' | 'b';
 }
 
 /** What the generator is doing. */
@@ -138,30 +142,16 @@ export interface TimelineView {
 /** What the inspector shows. */
 export type Panel = 'poses' | 'dance' | 'report';
 
-/**
- * True when a dance made from `inputs` is what the document asks for.
- * @param tunable the key strength of the dance follows its dial by itself
- */
-export function madeFrom(inputs: DanceInputs, { keyPoses, grid, dials }: DanceInputs, tunable: boolean): boolean {
-  const { keyStrength, variation, seed, seedClip } = inputs.dials;
-  return (
-    inputs.keyPoses === keyPoses &&
-    inputs.grid === grid &&
-    variation === dials.variation &&
-    seed === dials.seed &&
-    seedClip === dials.seedClip &&
-    (tunable || keyStrength === dials.keyStrength)
-  );
-}
-
 /** Makes the signals of one page. */
 export function createState() {
   const document = signal<ProjectDocument>(createDocument());
   const song = signal<Song | null>(null);
   const dance = signal<Dance | null>(null);
+  const compare = signal<Comparison | null>(null);
   const seeds = signal<SeedClip[]>([]);
   const grid = computed(() => document.value.grid ?? song.value?.grid ?? null);
   const duration = computed(() => song.value?.reference.duration ?? 0);
+  const frames = computed(() => Math.ceil(duration.value * spec.fps));
   return {
     document,
     undoLabel: signal<string | null>(null),
@@ -175,6 +165,9 @@ export function createState() {
     /** Frames [0, partial.frames) of the dance being made; they are shown before the rest of the former one. */
     partial: signal<Motion | null>(null),
     generation: signal<Generation>({ status: 'idle' }),
+    compare,
+    /** The dance on stage: that of now, or the held one while it is compared. */
+    onStage: computed(() => (compare.value?.shown === 'a' ? compare.value.dance : dance.value)),
     report: signal<DanceReport | null>(null),
     /** The key strength under the visitor's finger, before it is let go. */
     strengthDraft: signal<number | null>(null),
@@ -184,14 +177,14 @@ export function createState() {
     /** The beats in force: the visitor's corrections, else the analysis. */
     grid,
     duration,
-    frames: computed(() => Math.ceil(duration.value * spec.fps)),
+    frames,
     seedClip: computed(
       () => seeds.value.find((clip) => clip.id === document.value.dials.seedClip) ?? seeds.value[0] ?? null,
     ),
     /** True when poses, beats or settings changed since the dance was made. */
     stale: computed(() => {
       const shown = dance.value;
-      return !shown?.inputs || !madeFrom(shown.inputs, document.value, shown.uncorrected !== undefined);
+      return !shown?.inputs || !madeFrom(shown.inputs, document.value, shown.uncorrected !== undefined, frames.value);
     }),
     playing: signal(false),
     time: signal(0),

@@ -5,6 +5,7 @@ import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import { beatActions } from './actions/beats';
 import { cameraActions } from './actions/camera';
+import { compareActions } from './actions/compare';
 import { danceActions } from './actions/dance';
 import { demoActions } from './actions/demo';
 import { keyActions } from './actions/keys';
@@ -14,6 +15,7 @@ import { playbackActions } from './actions/playback';
 import { poseActions } from './actions/pose';
 import { pictureActions } from './actions/picture';
 import { projectActions } from './actions/project';
+import { rangeActions } from './actions/ranges';
 import { songActions } from './actions/song';
 import { tabActions } from './actions/tabs';
 import { tourActions } from './actions/tour';
@@ -23,6 +25,7 @@ import { trimActions } from './actions/trim';
 import { startAutosave } from './autosave';
 import type { Context, Services } from './context';
 import { tuningActions } from './actions/tuning';
+import { DanceCache } from './dance-cache';
 import { poseMath } from './pose-math';
 import type { Reporter } from './report-client';
 import { createState } from './state';
@@ -71,9 +74,12 @@ export function createStore(services: Services, reporter: Reporter) {
     analysed: () => analysed(),
   };
 
-  const dance = danceActions(context, reporter);
-  const tuning = tuningActions(context, reporter, dance);
+  const cache = new DanceCache(() => state.frames.value);
+  const dance = danceActions(context, reporter, cache);
+  const tuning = tuningActions(context, reporter, dance, cache);
   const beats = beatActions(context, dance.measureShown);
+  const ranges = rangeActions(context, dance);
+  const compare = compareActions(context, dance);
   const keys = keyActions(context);
   const view = viewActions(context);
   const playback = playbackActions(context, view.revealTime);
@@ -139,6 +145,8 @@ export function createStore(services: Services, reporter: Reporter) {
     state,
     ...dance,
     ...tuning,
+    ...ranges,
+    ...compare,
     ...pictureActions(context, dance),
     ...keys,
     ...beats,

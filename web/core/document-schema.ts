@@ -8,7 +8,7 @@ export const POSE_SIZE = spec.skeleton.joints.length * 3;
 const MAX_RADIANS = 4 * Math.PI;
 const MAX_SEED = 2 ** 31 - 1;
 /** More takes of one range than this is no project of a person. */
-const MAX_TAKES = 100;
+export const MAX_TAKES = 100;
 
 /** A dial: 0..1. */
 export const unit = v.pipe(v.number(), v.minValue(0), v.maxValue(1));

@@ -271,6 +271,34 @@ export const SHORTCUTS: readonly Shortcut[] = [
     group: 'Project',
     run: (store) => void store.generateForPage(),
   },
+  {
+    id: 'regenerate',
+    keys: ['Shift+G'],
+    label: 'Regenerate the selected range: another take of it',
+    group: 'Project',
+    run: (store) => void store.regenerateRange(),
+  },
+  {
+    id: 'take-back',
+    keys: ['Alt+ArrowLeft'],
+    label: 'Previous take of the range',
+    group: 'Project',
+    run: (store) => void store.stepTake(-1),
+  },
+  {
+    id: 'take-on',
+    keys: ['Alt+ArrowRight'],
+    label: 'Next take of the range',
+    group: 'Project',
+    run: (store) => void store.stepTake(1),
+  },
+  {
+    id: 'compare',
+    keys: ['A'],
+    label: 'Compare: hold this dance as A, then switch between A and B',
+    group: 'Project',
+    run: (store) => store.compare(),
+  },
   { id: 'zoom-in', keys: ['+', '='], label: 'Zoom in', group: 'View', run: (store) => store.zoom(1.5) },
   { id: 'zoom-out', keys: ['-'], label: 'Zoom out', group: 'View', run: (store) => store.zoom(1 / 1.5) },
   { id: 'fit', keys: ['0'], label: 'Show the whole song', group: 'View', run: (store) => store.fit() },
@@ -337,7 +365,7 @@ export function matches(
   const parts = combo.split('+').filter((part) => part !== '');
   const wanted = combo.endsWith('+') ? '+' : parts[parts.length - 1];
   const modifiers = combo.endsWith('+') ? parts : parts.slice(0, -1);
-  if (event.altKey) return false;
+  if (event.altKey !== modifiers.includes('Alt')) return false;
   if ((event.ctrlKey || event.metaKey) !== modifiers.includes('Mod')) return false;
   const key = event.key === ' ' ? 'Space' : event.key;
   const named = wanted.length > 1 || /^[A-Z]$/.test(wanted);
@@ -353,6 +381,9 @@ export function keyText(combo: string): string {
   return combo
     .replace('Mod+', mac ? '⌘' : 'Ctrl+')
     .replace('Shift+', mac ? '⇧' : 'Shift+')
+    .replace('Alt+', mac ? '⌥' : 'Alt+')
+    .replace('ArrowLeft', '←')
+    .replace('ArrowRight', '→')
     .replace('Escape', 'Esc');
 }
 

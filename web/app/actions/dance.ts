@@ -1,12 +1,17 @@
 /** Making dances: loading the model, generating, cancelling, measuring. */
+import { batch } from '@preact/signals';
+import type { FrameRange } from '../../core/excerpt';
 import spec from '../../core/spec.json';
-import type { Motion } from '../../core/types';
+import type { BeatGrid, Features, Motion, SeedClip } from '../../core/types';
 import type { Backend } from '../../workers/protocol';
 import { isAbort, messageOf, onGrid, type Context } from '../context';
-import type { DanceResult, ModelInfo } from '../ports';
+import type { DanceCache } from '../dance-cache';
+import { createMaker } from '../dance-maker';
+import type { ModelInfo, SavedDance } from '../ports';
+import { inputsOf, madeFrom, trimFrames, type DanceInputs } from '../recipe';
 import type { Reporter } from '../report-client';
 import { measureDance, type DanceReport } from '../report';
-import type { Dance, DanceInputs } from '../state';
+import type { Dance } from '../state';
 
 /** Settings of one dance; what is left out comes from the document's dials. */
 export interface GenerateCall {
@@ -28,9 +33,19 @@ export interface GenerateSummary {
   windows: number;
 }
 
+/** A whole song as it was heard. */
+interface Heard {
+  features: Features;
+  grid: BeatGrid;
+}
+
 /** Actions on dances. */
-export function danceActions(context: Context, reporter: Reporter) {
+export function danceActions(context: Context, reporter: Reporter, cache: DanceCache) {
   const { state, services } = context;
+  const maker = createMaker(context, reporter, cache);
+  const hash = () => state.song.value?.reference.hash ?? '';
+  /** A dance that is being put together from parts. */
+  let bringing: AbortController | null = null;
   let running: AbortController | null = null;
   /** The dance that the report is of. */
   let measured: Motion | null = null;
@@ -94,29 +109,66 @@ export function danceActions(context: Context, reporter: Reporter) {
     return dance && dance.kind !== 'preview' && dance.motion.frames === state.frames.value ? dance.motion : undefined;
   };
 
-  async function generate(call: GenerateCall = {}): Promise<GenerateSummary> {
-    check(call);
-    const song = state.song.value;
-    if (!song) throw new Error('There is no song yet: drop one, or call loadSong first.');
+  const seedClipNow = () => {
+    if (!state.song.value) throw new Error('There is no song yet: drop one, or call loadSong first.');
     const seedClip = state.seedClip.value;
     if (!seedClip) throw new Error('The starting clips could not be loaded: reload the page.');
-    const range = frameRange(call.range);
+    return seedClip;
+  };
+
+  /** Runs a job of the generator; the newest wins. */
+  async function work<T>(job: (signal: AbortSignal, ready: () => Promise<Heard>) => Promise<T>, backend?: Backend) {
     cancel('A newer dance was asked for.');
     const own = (running = new AbortController());
     const { signal } = own;
+    const ready = async () => {
+      await Promise.race([loadModel(backend ?? services.forcedBackend), aborted(signal)]);
+      const heard = await Promise.race([context.analysed(), aborted(signal)]);
+      if (running === own) state.generation.value = { status: 'running', fraction: 0, windows: 0 };
+      return heard;
+    };
     state.generation.value = { status: 'loading', fraction: 0, bytes: 0, totalBytes: 0, cached: false };
     try {
-      await Promise.race([loadModel(call.backend ?? services.forcedBackend), aborted(signal)]);
-      const heard = await Promise.race([context.analysed(), aborted(signal)]);
-      const { document } = state;
-      const inputs: DanceInputs = {
-        keyPoses: document.value.keyPoses,
-        grid: document.value.grid,
-        dials: document.value.dials,
-      };
-      const { keyStrength, variation, seed } = { ...document.value.dials, ...defined(call) };
-      state.generation.value = { status: 'running', fraction: 0, windows: 0 };
-      const result = await services.engine.generate(
+      return await job(signal, ready);
+    } finally {
+      if (running === own) cancel();
+    }
+  }
+
+  const progress = (motion: Motion | null, fraction: number, windows: number) => {
+    if (motion) state.partial.value = motion;
+    state.generation.value = { status: 'running', fraction, windows };
+  };
+
+  async function generate(call: GenerateCall = {}): Promise<GenerateSummary> {
+    check(call);
+    const seedClip = seedClipNow();
+    const range = frameRange(call.range);
+    return range ? generateRange(call, range, seedClip) : generateWhole(call, seedClip, false);
+  }
+
+  /** The dance of the document with what the call says in place of the dials; `reuse` takes parts that were made before. */
+  async function generateWhole(call: GenerateCall, seedClip: SeedClip, reuse: boolean): Promise<GenerateSummary> {
+    return work(async (signal, ready) => {
+      const inputs = inputsOf(state.document.value);
+      const { keyStrength, variation, seed } = { ...inputs.dials, ...defined(call) };
+      const dials = { keyStrength, variation, seed };
+      const made = await maker.make({ inputs, dials, seedClip, reuse, ready, onProgress: progress, signal });
+      signal.throwIfAborted();
+      show({ ...made, kind: 'generated', inputs, byDials: meansDials(dials, inputs.dials) });
+      context.announce('The dance is ready.');
+      return summary(made.motion, made.result);
+    }, call.backend);
+  }
+
+  /** Only a stretch made anew, which the document does not know of. */
+  async function generateRange(call: GenerateCall, range: FrameRange, seedClip: SeedClip): Promise<GenerateSummary> {
+    return work(async (signal, ready) => {
+      const heard = await ready();
+      const inputs = inputsOf(state.document.value);
+      const { keyStrength, variation, seed } = { ...inputs.dials, ...defined(call) };
+      const trim = trimFrames(inputs.trim, state.frames.value);
+      const { motion, uncorrected, ...result } = await services.engine.generate(
         {
           ...onGrid(heard, inputs.grid),
           frames: state.frames.value,
@@ -124,42 +176,73 @@ export function danceActions(context: Context, reporter: Reporter) {
           seedClip,
           otherClips: state.seeds.value,
           options: { keyStrength, variation, seed, cleanFeet: true },
-          ...(range ? { range, previous: danceSoFar(), previousUncorrected: state.dance.value?.uncorrected } : {}),
+          ...(trim ? { trim } : {}),
+          range,
+          previous: danceSoFar(),
+          previousUncorrected: state.dance.value?.uncorrected,
         },
-        (motion, fraction, windows) => {
-          if (signal.aborted) return;
-          if (motion) state.partial.value = motion;
-          state.generation.value = { status: 'running', fraction, windows };
+        (part, fraction, windows) => {
+          if (!signal.aborted) progress(part, fraction, windows);
         },
         signal,
       );
       signal.throwIfAborted();
-      const { dials } = inputs;
-      const byDials = keyStrength === dials.keyStrength && variation === dials.variation && seed === dials.seed;
-      finish(result, { inputs, keyStrength, byDials });
-      const { backend, model, windows, milliseconds, motion } = result;
-      return { backend, model, frames: motion.frames, milliseconds, windows };
-    } finally {
-      if (running === own) cancel();
-    }
+      show({ motion, uncorrected, result, kind: 'generated', inputs, keyStrength, byDials: false });
+      context.announce('The dance is ready.');
+      return summary(motion, result);
+    }, call.backend);
   }
 
-  function finish(result: DanceResult, made: Pick<Dance, 'inputs' | 'keyStrength' | 'byDials'>): void {
-    const { motion, uncorrected, ...rest } = result;
-    state.dance.value = { motion, kind: 'generated', result: rest, uncorrected, ...made };
-    state.partial.value = null;
-    context.announce('The dance is ready.');
+  /** Puts a dance on stage, keeps it for the next visit and measures it. */
+  function show(dance: Dance): void {
+    bringing?.abort();
+    if (dance.byDials) cache.remember(dance, hash());
+    batch(() => {
+      state.dance.value = dance;
+      state.partial.value = null;
+    });
     saveShown();
     void measureShown();
   }
 
+  /**
+   * Brings the dance of the document back where it was made before: the very one, or one put together from parts.
+   * @returns false when the network is needed
+   */
+  function bringBack(): boolean {
+    const inputs = inputsOf(state.document.value);
+    const back = cache.find(hash(), inputs);
+    if (back) {
+      show(back);
+      return true;
+    }
+    if (!maker.isKnown(inputs)) return false;
+    bringing?.abort();
+    const own = (bringing = new AbortController());
+    void composed(inputs, own.signal).catch((error: unknown) => {
+      if (!isAbort(error)) context.notify('error', messageOf(error));
+    });
+    return true;
+  }
+
+  async function composed(inputs: DanceInputs, signal: AbortSignal): Promise<void> {
+    const { dials } = inputs;
+    const ready = () => Promise.reject(new Error('The dance could not be put together: generate it.'));
+    const seedClip = seedClipNow();
+    const made = await maker.make({ inputs, dials, seedClip, reuse: true, ready, onProgress: () => undefined, signal });
+    signal.throwIfAborted();
+    const wanted = inputsOf(state.document.value);
+    if (!madeFrom(inputs, wanted, true, state.frames.value)) return;
+    show({ ...made, kind: 'generated', inputs, byDials: true });
+  }
+
   /** Keeps the dance on stage for the next visit. */
   function saveShown(): void {
-    const hash = state.song.value?.reference.hash;
     const dance = state.dance.value;
-    if (!hash || dance?.kind !== 'generated') return;
-    const { motion, uncorrected, keyStrength } = dance;
-    services.storage.saveDance({ hash, motion, uncorrected, keyStrength }).catch(() => undefined);
+    if (!hash() || dance?.kind !== 'generated') return;
+    const { motion, uncorrected, keyStrength, byDials, inputs } = dance;
+    const saved = { hash: hash(), motion, uncorrected, keyStrength, byDials, inputs: inputs ?? undefined };
+    services.storage.saveDance(saved).catch(() => undefined);
   }
 
   /** Shows what was measured of a dance. */
@@ -168,13 +251,16 @@ export function danceActions(context: Context, reporter: Reporter) {
     state.report.value = report;
   }
 
+  /** What the dance on stage dances to, where the song is trimmed. */
+  const partShown = () => trimFrames(state.dance.value?.inputs?.trim ?? null, state.frames.value);
+
   /** Measures the dance on stage for the report panel. */
   async function measureShown(): Promise<void> {
     const dance = state.dance.value;
     if (!dance || dance.kind === 'preview') return;
     const keys = dance.inputs?.keyPoses ?? state.document.value.keyPoses;
     try {
-      const report = await reporter.measure(dance.motion, keys, state.grid.value);
+      const report = await reporter.measure(dance.motion, keys, state.grid.value, partShown());
       if (state.dance.value?.motion === dance.motion) showReport(dance.motion, report);
     } catch (error) {
       if (!isAbort(error)) context.notify('error', messageOf(error));
@@ -187,14 +273,43 @@ export function danceActions(context: Context, reporter: Reporter) {
     measureShown,
     saveShown,
     showReport,
+    showDance: show,
+    bringBack,
 
     /** What the Generate button does: errors become notices. */
-    async generateForPage(range?: { start: number; end: number }): Promise<void> {
+    async generateForPage(): Promise<void> {
       try {
-        await generate(range ? { range } : {});
+        await generate();
       } catch (error) {
         if (!isAbort(error)) context.notify('error', messageOf(error));
       }
+    },
+
+    /**
+     * Makes the dance that the document asks for, from what was made before as far as that goes. Errors become notices.
+     * @returns false when it was cancelled or failed
+     */
+    async catchUp(): Promise<boolean> {
+      if (!state.stale.value || bringBack()) return true;
+      try {
+        await generateWhole({}, seedClipNow(), true);
+        return true;
+      } catch (error) {
+        if (!isAbort(error)) context.notify('error', messageOf(error));
+        return false;
+      }
+    },
+
+    /** Puts a dance from the last visit on stage, if it is one to the song at hand; it knows what it was made from. */
+    restoreDance(saved: SavedDance | null): boolean {
+      if (saved?.hash !== hash() || saved.motion.frames !== state.frames.value) return false;
+      const { motion, uncorrected, keyStrength, byDials } = saved;
+      const inputs = saved.inputs ?? inputsOf(state.document.value);
+      const dance: Dance = { motion, kind: 'generated', inputs, result: null, uncorrected, keyStrength, byDials };
+      if (byDials) cache.remember(dance, hash());
+      state.dance.value = dance;
+      void measureShown();
+      return true;
     },
 
     /** The model had to move to another backend by itself. */
@@ -215,7 +330,7 @@ export function danceActions(context: Context, reporter: Reporter) {
       if (!dance) throw new Error('There is no dance yet: call generate first.');
       const keys = dance.inputs?.keyPoses ?? state.document.value.keyPoses;
       const known = measured === dance.motion ? state.report.value : null;
-      return structuredClone(known ?? measureDance(dance.motion, keys, state.grid.value));
+      return structuredClone(known ?? measureDance(dance.motion, keys, state.grid.value, partShown()));
     },
 
     /** Changes a setting of the next dance: one step of undo. */
@@ -232,6 +347,18 @@ export function danceActions(context: Context, reporter: Reporter) {
 
 /** Actions on dances. */
 export type DanceActions = ReturnType<typeof danceActions>;
+
+/** True when a dance made with these settings is what the document's own dials stand for. */
+function meansDials(used: Settings, dials: Settings): boolean {
+  return used.keyStrength === dials.keyStrength && used.variation === dials.variation && used.seed === dials.seed;
+}
+
+type Settings = Required<Pick<GenerateCall, 'keyStrength' | 'variation' | 'seed'>>;
+
+function summary(motion: Motion, result: Dance['result']): GenerateSummary {
+  const { backend, model, milliseconds, windows } = result!;
+  return { backend, model, frames: motion.frames, milliseconds, windows };
+}
 
 /** The members that are not undefined. */
 function defined(call: GenerateCall): GenerateCall {

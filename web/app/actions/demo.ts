@@ -2,6 +2,7 @@
 import type { ProjectDocument } from '../../core/document';
 import { isAbort, messageOf, type Context } from '../context';
 import type { Demo } from '../ports';
+import { inputsOf } from '../recipe';
 import type { Song } from '../state';
 import type { DanceActions } from './dance';
 import type { SongActions } from './song';
@@ -64,7 +65,7 @@ export function demoActions(context: Context, songs: SongActions, dance: DanceAc
     }
     context.sync();
     const { grid, dials } = history.present;
-    const inputs = { keyPoses: demo.document.keyPoses, grid, dials };
+    const inputs = { ...inputsOf(demo.document), grid, dials };
     songs.showSong(song, { motion: demo.motion, kind: 'demo', inputs, result: null });
     if (opening === 'first') {
       player.setMuted(true);

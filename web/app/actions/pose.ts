@@ -28,7 +28,7 @@ export function poseActions(context: Context, keys: Keys, math: PoseMath) {
 
   /** The pose of the dance at the playhead; null without a dance. */
   const poseNow = (): number[] | null => {
-    const motion = state.dance.value?.motion;
+    const motion = state.onStage.value?.motion;
     if (!motion || motion.frames === 0) return null;
     return quaternionsToPose(framePose(motion, services.player.time()).quaternions);
   };

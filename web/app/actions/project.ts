@@ -24,12 +24,7 @@ export function projectActions(context: Context, songs: SongActions, demo: DemoA
 
   /** Shows a dance that was kept, if it is of the song at hand. */
   function showKept(saved: SavedDance | null): void {
-    if (saved?.hash !== state.song.value?.reference.hash || saved?.motion.frames !== state.frames.value) return;
-    const { motion, uncorrected, keyStrength } = saved;
-    const { keyPoses, grid, dials } = state.document.value;
-    const inputs = { keyPoses, grid, dials };
-    state.dance.value = { motion, kind: 'generated', inputs, result: null, uncorrected, keyStrength };
-    void dance.measureShown();
+    dance.restoreDance(saved);
   }
 
   async function restore(): Promise<boolean> {
@@ -49,7 +44,10 @@ export function projectActions(context: Context, songs: SongActions, demo: DemoA
         await demo.showDemo('first');
         history.reset({ ...history.present, camera: document.camera });
         context.sync();
-      } else await demo.showDemo({ document, step: null });
+      } else {
+        await demo.showDemo({ document, step: null });
+        showKept(saved.dance);
+      }
       return true;
     }
     const blob = await services.storage.loadSong(song.hash).catch(() => null);

@@ -1,38 +1,39 @@
 /** What the dials do to the dance at hand without the network: key strength at once, takes that were already made, the trade-off plot. */
 import { batch, effect, untracked } from '@preact/signals';
 import { tradeOffStrengths } from '../../core/report-curves';
+import type { KeyPose } from '../../core/types';
 import { isAbort, messageOf, type Context } from '../context';
+import type { DanceCache } from '../dance-cache';
+import { sameStrengths, type DanceInputs } from '../recipe';
 import type { Reporter, TunableDance } from '../report-client';
-import { madeFrom, type Dance } from '../state';
+import type { Dance } from '../state';
 import type { DanceActions } from './dance';
 
-/** Takes that are kept, and how many frames all of them may have together (some 1.6 kB a frame). */
-const KEPT = { takes: 8, frames: 40_000 };
 /** The trade-off is worked out at 9 strengths. */
 const HALVINGS = 3;
 
 /** Actions on the dance at hand. */
-export function tuningActions(context: Context, reporter: Reporter, dances: DanceActions) {
-  const { state, services } = context;
-  /** Dances that were made, newest last; each knows what it was made from. */
-  let takes: { dance: Dance; hash: string }[] = [];
-  /** The strength that is being worked out. */
-  let wanted: number | null = null;
+export function tuningActions(context: Context, reporter: Reporter, dances: DanceActions, cache: DanceCache) {
+  const { state, services, history } = context;
+  /** The strengths that are being worked out. */
+  let wanted: { strength: number; keyPoses: readonly KeyPose[] } | null = null;
   let plotting: AbortController | null = null;
 
-  const hash = () => state.song.value?.reference.hash ?? '';
-
-  const tunable = (): (TunableDance & { dance: Dance }) | null => {
+  const tunable = (): (TunableDance & { dance: Dance; inputs: DanceInputs }) | null => {
     const dance = state.dance.value;
     if (!dance?.uncorrected || !dance.inputs) return null;
-    return { dance, uncorrected: dance.uncorrected, motion: dance.motion, keyPoses: dance.inputs.keyPoses };
+    const { uncorrected, motion, inputs } = dance;
+    return { dance, inputs, uncorrected, motion, keyPoses: inputs.keyPoses };
   };
 
-  /** Finishes the dance on stage at a strength; `live` shows the poses around the playhead first. */
-  async function strengthen(strength: number, live: boolean): Promise<void> {
+  /** Finishes the dance on stage at other strengths of dial and key poses; `live` shows the poses around the playhead first. */
+  async function strengthen(strength: number, live: boolean, keyPoses?: readonly KeyPose[]): Promise<void> {
     const now = tunable();
-    if (!now || (now.dance.keyStrength === strength && wanted === null) || wanted === strength) return;
-    wanted = strength;
+    if (!now) return;
+    const wish = { strength, keyPoses: keyPoses ?? now.keyPoses };
+    const same = (other: typeof wish) => other.strength === strength && other.keyPoses === wish.keyPoses;
+    if (wanted ? same(wanted) : same({ strength: now.dance.keyStrength ?? NaN, keyPoses: now.keyPoses })) return;
+    wanted = wish;
     const { uncorrected } = now;
     const swap = (change: Partial<Dance>) => {
       const shown = state.dance.value;
@@ -41,75 +42,68 @@ export function tuningActions(context: Context, reporter: Reporter, dances: Danc
       return true;
     };
     try {
-      const { motion, report } = await reporter.finish(now, {
-        strength,
-        grid: state.grid.value,
-        ...(live ? { near: services.player.time() * now.motion.fps } : {}),
-        onDraft: (draft) => void swap({ motion: draft }),
-      });
+      const { motion, report } = await reporter.finish(
+        { uncorrected, motion: now.motion, keyPoses: wish.keyPoses },
+        {
+          strength,
+          grid: state.grid.value,
+          ...(live ? { near: services.player.time() * now.motion.fps } : {}),
+          onDraft: (draft) => void swap({ motion: draft }),
+        },
+      );
       batch(() => {
-        if (swap({ motion, keyStrength: strength })) dances.showReport(motion, report);
+        const inputs = { ...(state.dance.value?.inputs ?? now.inputs), keyPoses: wish.keyPoses };
+        if (swap({ motion, keyStrength: strength, inputs })) dances.showReport(motion, report);
       });
       if (state.dance.value?.motion !== motion) return;
-      if (state.dance.value.byDials) remember(state.dance.value);
+      if (state.dance.value.byDials) cache.remember(state.dance.value, state.song.value?.reference.hash ?? '');
       dances.saveShown();
     } catch (error) {
       if (!isAbort(error)) context.notify('error', messageOf(error));
     } finally {
-      if (wanted === strength) wanted = null;
+      if (wanted === wish) wanted = null;
     }
   }
 
-  /** Remembers a dance that the document's own dials made. */
-  function remember(dance: Dance): void {
-    const own = hash();
-    takes = takes.filter((take) => take.hash === own && !(take.dance.inputs && sameTake(take.dance, dance)));
-    takes.push({ dance, hash: own });
-    const frames = () => takes.reduce((sum, take) => sum + take.dance.motion.frames, 0);
-    while (takes.length > KEPT.takes || (takes.length > 1 && frames() > KEPT.frames)) takes.shift();
-  }
-
-  const sameTake = (a: Dance, b: Dance) =>
-    a.inputs !== null && b.inputs !== null && madeFrom(a.inputs, b.inputs, a.uncorrected !== undefined);
-
-  /** The dance that the document asks for, if it was made before. */
-  const known = (): Dance | null => {
-    const own = hash();
-    const found = takes.findLast(
-      ({ dance, hash }) =>
-        hash === own && dance.inputs && madeFrom(dance.inputs, state.document.value, dance.uncorrected !== undefined),
-    );
-    return found?.dance ?? null;
-  };
-
-  let newest: Dance['result'] = null;
+  let newest: unknown = null;
   effect(() => {
     const dance = state.dance.value;
-    if (!dance?.byDials || dance.result === newest) return;
-    newest = dance.result;
-    untracked(() => {
-      remember(dance);
-      // The dial may have moved while the dance was made.
-      void strengthen(state.document.value.dials.keyStrength, false);
-    });
+    const made = dance?.uncorrected ?? dance?.motion;
+    if (!dance?.byDials || made === newest) return;
+    newest = made;
+    // Dial and key poses may have moved while the dance was made, or since it was on stage before.
+    untracked(() => follow(true));
   });
 
   let before = state.document.value.dials.keyStrength;
   effect(() => {
     const { keyStrength } = state.document.value.dials;
     const stale = state.stale.value;
+    const idle = state.generation.value.status === 'idle';
+    void state.document.value.keyPoses;
     untracked(() => {
-      // A take that was made before comes back at once, whether by its number or by undo.
-      const back = stale && state.generation.value.status === 'idle' ? known() : null;
-      if (back) {
-        state.dance.value = back;
-        void dances.measureShown();
-      }
-      if (keyStrength === before && !back) return;
+      // A dance that was made before comes back at once, whether by its number or by undo.
+      const back = stale && idle && dances.bringBack();
+      const moved = keyStrength !== before;
       before = keyStrength;
-      void strengthen(keyStrength, false);
+      if (moved || !back) follow(moved);
     });
   });
+
+  /** Takes over the strengths that the document says; that of the dial only when `dial` says so: a call may have asked for another one. */
+  function follow(dial: boolean): void {
+    const now = tunable();
+    if (!now) return;
+    const { dials, keyPoses } = state.document.value;
+    const same = state.stale.value || sameStrengths(now.keyPoses, keyPoses);
+    if (same && !state.stale.value && now.keyPoses !== keyPoses) {
+      // Only names or locks changed: the dance is the same.
+      state.dance.value = { ...now.dance, inputs: { ...now.inputs, keyPoses } };
+    }
+    if (!dial && same) return;
+    const strength = dial ? dials.keyStrength : (now.dance.keyStrength ?? dials.keyStrength);
+    void strengthen(strength, history.capturing, same ? undefined : keyPoses);
+  }
 
   return {
     /** The dial is being dragged: the poses around the playhead follow at once, the rest as soon as it rests. */
@@ -131,7 +125,7 @@ export function tuningActions(context: Context, reporter: Reporter, dances: Danc
     async showTake(seed: number): Promise<void> {
       if (seed === state.document.value.dials.seed) return;
       dances.setDial('seed', seed);
-      if (state.stale.value && state.song.value && !state.songJob.value) await dances.generateForPage();
+      if (state.song.value && !state.songJob.value) await dances.catchUp();
     },
 
     /** Works out consistency against smoothness of the dance on stage, unless that is done or under way. */
@@ -142,23 +136,24 @@ export function tuningActions(context: Context, reporter: Reporter, dances: Danc
         state.tradeOff.value = null;
         return;
       }
-      const { uncorrected } = now;
-      if (state.tradeOff.value?.of === uncorrected) return;
+      const { uncorrected, keyPoses } = now;
+      const isOfThis = (plot: typeof state.tradeOff.value) => plot?.of === uncorrected && plot.keyPoses === keyPoses;
+      if (isOfThis(state.tradeOff.value)) return;
       plotting?.abort();
       const own = (plotting = new AbortController());
-      state.tradeOff.value = { of: uncorrected, points: [], complete: false };
+      state.tradeOff.value = { of: uncorrected, keyPoses, points: [], complete: false };
       const change = (complete: boolean, more: TradeOffPoints = []) => {
         const shown = state.tradeOff.value;
-        if (shown?.of !== uncorrected) return;
+        if (!shown || !isOfThis(shown)) return;
         const points = [...shown.points, ...more].sort((a, b) => a.strength - b.strength);
-        state.tradeOff.value = { of: uncorrected, points, complete };
+        state.tradeOff.value = { ...shown, points, complete };
       };
       try {
         await reporter.plot(now, tradeOffStrengths(HALVINGS), (point) => change(false, [point]), own.signal);
         change(true);
       } catch (error) {
         if (!isAbort(error)) context.notify('error', messageOf(error));
-        else if (state.tradeOff.value?.of === uncorrected) state.tradeOff.value = null;
+        else if (isOfThis(state.tradeOff.value)) state.tradeOff.value = null;
       }
     },
   };

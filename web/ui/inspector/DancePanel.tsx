@@ -46,7 +46,7 @@ export function DancePanel() {
             type="button"
             class="secondary full"
             disabled={generation.value.status !== 'idle'}
-            onClick={() => void store.generateForPage(range)}
+            onClick={() => void store.regenerateRange(range)}
           >
             <Icon name="repeat" />
             Generate only the loop

@@ -17,6 +17,7 @@ export function TradeOffPlot() {
 
   useSignalEffect(() => {
     void state.dance.value?.uncorrected;
+    void state.dance.value?.inputs?.keyPoses;
     if (state.generation.value.status === 'idle') void store.plotTradeOff();
   });
   const hasKeys = useComputed(() => (state.dance.value?.inputs?.keyPoses.length ?? 0) > 0);
