@@ -35,7 +35,8 @@ export function BeatLane() {
   const first = (chunk.value * CHUNK) / scale.value;
   const last = ((chunk.value + 1) * CHUNK + state.viewWidth.value) / scale.value;
   const ticks = grid ? visibleTicks(grid, scale.value, first, last, focused.value) : [];
-  const tabbable = ticks.some(({ index }) => index === focused.value) ? focused.value : ticks[0]?.index;
+  // The one in the middle is in sight for sure.
+  const tabbable = ticks.some(({ index }) => index === focused.value) ? focused.value : ticks[ticks.length >> 1]?.index;
   const taps = state.tapping.value?.times ?? [];
 
   return (
@@ -116,7 +117,10 @@ function BeatTick({ tick, x, tabbable }: { tick: Tick; x: number; tabbable: bool
         if (event.detail === 0) store.seek(time);
       }}
       onKeyDown={onKeyDown}
-      onFocus={() => (focused.value = index)}
+      onFocus={(event) => {
+        focused.value = index;
+        if (event.currentTarget.matches(':focus-visible')) store.revealTime(time);
+      }}
       onBlur={() =>
         queueMicrotask(() => {
           if (focused.value === index && document.activeElement !== document.body) focused.value = -1;

@@ -63,7 +63,7 @@ export function BeatMenu({ opener }: { opener: RefObject<HTMLButtonElement | nul
       </Row>
       <Row label="Shift">
         <Do run={() => store.nudgeBeats(-1, 'frame')} title={tip('beats-frame-earlier')}>
-          −1 frame
+          − frame
         </Do>
         <Do run={() => store.nudgeBeats(-1, 'fine')} title={tip('beats-earlier')}>
           −10 ms
@@ -72,7 +72,7 @@ export function BeatMenu({ opener }: { opener: RefObject<HTMLButtonElement | nul
           +10 ms
         </Do>
         <Do run={() => store.nudgeBeats(1, 'frame')} title={tip('beats-frame-later')}>
-          +1 frame
+          + frame
         </Do>
       </Row>
       <Row label="Bars">

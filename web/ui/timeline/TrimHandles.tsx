@@ -72,6 +72,7 @@ export function TrimHandles() {
     event.preventDefault();
     event.stopPropagation();
     store.moveTrim(end, target);
+    store.revealTime((store.state.document.value.trim ?? { start: 0, end: duration.value })[end]);
   };
 
   const shade = (from: number, to: number) => ({
@@ -107,6 +108,9 @@ export function TrimHandles() {
           onPointerDown={onPointerDown(end)}
           onDblClick={() => store.moveTrim(end, end === 'start' ? 0 : duration.value)}
           onKeyDown={onKeyDown(end)}
+          onFocus={(event) => {
+            if (event.currentTarget.matches(':focus-visible')) store.revealTime(part[end]);
+          }}
         />
       ))}
     </>
