@@ -19,6 +19,7 @@ import './style-timeline.css';
 import './style-beats.css';
 import './style-panels.css';
 import './style-pose.css';
+import './style-library.css';
 import './style-report.css';
 import './style-project.css';
 import './style-phone.css';
@@ -42,6 +43,9 @@ const store = createStore(
 const thumbnails = new Thumbnails();
 
 window.posebeat = createApi(store, store.start());
+void store.loadOwnPoses();
+// Another tab may have saved some.
+window.addEventListener('focus', () => void store.loadOwnPoses());
 bindShortcuts(store, window);
 for (const gesture of ['pointerdown', 'keydown'])
   window.addEventListener(gesture, () => store.unlock(), { capture: true });

@@ -6,6 +6,7 @@ import type { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import type { Backend } from '../workers/protocol';
 import type { Assets, Engine, Listener, Storage } from './ports';
+import type { PoseStore } from './pose-store';
 import type { NoticeAction, State } from './state';
 import type { Tabs } from './tabs';
 
@@ -16,6 +17,8 @@ export interface Services {
   engine: Engine;
   storage: Storage;
   assets: Assets;
+  /** Missing: the browser's own. */
+  poseStore?: PoseStore;
   /** Missing where there can be no other tab. */
   tabs?: Tabs;
   /** From `?backend=`. */

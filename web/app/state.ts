@@ -2,6 +2,7 @@
 import { computed, signal } from '@preact/signals';
 import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
+import type { PoseClips } from '../core/formats/pose-sequence';
 import type { ProjectDocument, SongReference } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
 import type { Limb } from '../core/pose-tools';
@@ -20,6 +21,7 @@ import type {
 import type { LoopRange } from '../audio/player';
 import type { DanceResult, LoadProgress, ModelInfo } from './ports';
 import { madeFrom, type DanceInputs } from './recipe';
+import type { OwnPose } from './pose-store';
 import type { DanceReport } from './report';
 
 /** The song at hand. Its parts arrive one after another: sound, waveform, first beats, everything. */
@@ -105,6 +107,15 @@ export interface PoseClip {
   name: string;
 }
 
+/** An animation file that a pose is being taken from. */
+export interface PoseImport extends PoseClips {
+  /** The file's name. */
+  file: string;
+  /** Which animation of the file. */
+  clip: number;
+  frame: number;
+}
+
 /** A blend that is being tried in the editor. */
 export interface PoseBlend {
   /** Name of the other pose. */
@@ -159,6 +170,11 @@ export function createState() {
     song,
     songJob: signal<SongJob | null>(null),
     poses: signal<LibraryPose[]>([]),
+    /** The visitor's own poses, newest first. */
+    ownPoses: signal<OwnPose[]>([]),
+    poseImport: signal<PoseImport | null>(null),
+    /** Name of the animation file that is being read, or null. */
+    poseImportJob: signal<string | null>(null),
     seeds,
     model: signal<ModelInfo | null>(null),
     dance,
@@ -233,6 +249,8 @@ export function createState() {
     /** Small screens: whether the inspector is open; a large one shows it always. */
     sheetOpen: signal(true),
     help: signal(false),
+    /** The walk-through: which step is shown, from 0; null = none. */
+    tour: signal<number | null>(null),
     notices: signal<Notice[]>([]),
     /** Another tab has this project: what is changed here is not kept. */
     elsewhere: signal(false),

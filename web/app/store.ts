@@ -10,9 +10,11 @@ import { danceActions } from './actions/dance';
 import { demoActions } from './actions/demo';
 import { keyActions } from './actions/keys';
 import { layoutActions } from './actions/layout';
+import { libraryActions } from './actions/library';
 import { overlayActions } from './actions/overlays';
 import { playbackActions } from './actions/playback';
 import { poseActions } from './actions/pose';
+import { poseImportActions } from './actions/pose-import';
 import { pictureActions } from './actions/picture';
 import { projectActions } from './actions/project';
 import { rangeActions } from './actions/ranges';
@@ -84,6 +86,7 @@ export function createStore(services: Services, reporter: Reporter) {
   const view = viewActions(context);
   const playback = playbackActions(context, view.revealTime);
   const pose = poseActions(context, keys, poseMath);
+  const library = libraryActions(context, services.poseStore);
   const songs = songActions(context, dance);
   const demo = demoActions(context, songs, dance);
   const project = projectActions(context, songs, demo, dance);
@@ -154,23 +157,25 @@ export function createStore(services: Services, reporter: Reporter) {
     ...trimActions(context),
     ...playback,
     ...pose,
+    ...library,
+    ...poseImportActions(context, library, { addKey: keys.addKey, editPose: pose.editPose }),
     ...songs,
     ...project,
     ...demo,
     ...tabs,
     ...view,
     ...cameraActions(context),
+    ...tourActions(context),
     ...overlayActions(context),
     ...layoutActions(context),
-    ...tourActions(context),
     undo,
     redo,
     whenReady,
     whenCalm,
     notify: context.notify,
+    announce: context.announce,
   };
 }
-    announce: context.announce,
 
 /** State and actions of the page. */
 export type Store = ReturnType<typeof createStore>;

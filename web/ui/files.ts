@@ -1,4 +1,5 @@
 /** Files from the visitor: chosen, dropped, saved. */
+import { isPoseFile } from '../app/pose-reader';
 import type { Store } from '../app/store';
 
 export { fileName, saveFile } from '../app/download';
@@ -7,7 +8,8 @@ const PROJECT = /\.(posebeat|json|zip)$/i;
 
 /** Opens whatever file it is: a project or a song. */
 export function openFile(store: Store, file: File): void {
-  if (PROJECT.test(file.name)) void store.openProject(file);
+  if (isPoseFile(file)) void store.importPoseFile(file);
+  else if (PROJECT.test(file.name)) void store.openProject(file);
   else void store.dropSong(file);
 }
 
