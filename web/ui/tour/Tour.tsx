@@ -127,14 +127,21 @@ function Card({ index }: { index: number }) {
           <button
             type="button"
             class="quiet"
+            aria-label="Skip the tour"
+            title={`Skip the tour (${keyText('Escape')}). H brings it back.`}
             onClick={() => store.endTour()}
-            title={`Skip (${keyText('Escape')}). H brings it back.`}
           >
-            Skip the tour
+            <span>Skip the tour</span>
+            <Icon name="close" />
           </button>
-          <button type="button" class="quiet" onClick={() => store.nextTourStep()}>
-            {last ? 'Done' : 'Next step'}
-            <Icon name={last ? 'check' : 'chevronRight'} size={16} />
+          <button
+            type="button"
+            class="quiet"
+            aria-label={last ? 'Finish the tour' : 'Next step'}
+            onClick={() => store.nextTourStep()}
+          >
+            <span>{last ? 'Done' : 'Next step'}</span>
+            <Icon name={last ? 'check' : 'chevronRight'} />
           </button>
         </p>
       </section>

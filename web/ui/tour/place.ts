@@ -38,12 +38,12 @@ export function placeCard(card: Box, anchor: Box, stage: Box, avoid: readonly Bo
   let left = clamp(middle.x - card.width / 2, stage.left + GAP, right);
   let top = clamp(middle.y - card.height / 2, stage.top + GAP, bottom);
   let side: Place['side'];
-  if (anchor.left >= stage.left + stage.width - 1) {
-    side = 'right';
-    left = right;
-  } else if (anchor.top >= stage.top + stage.height - 1) {
+  if (anchor.top >= stage.top + stage.height - 1) {
     side = 'bottom';
     top = bottom;
+  } else if (anchor.left >= stage.left + stage.width - 1) {
+    side = 'right';
+    left = right;
   } else if (anchor.top + anchor.height <= stage.top + 1) {
     side = 'top';
     top = stage.top + GAP;
@@ -55,7 +55,7 @@ export function placeCard(card: Box, anchor: Box, stage: Box, avoid: readonly Bo
     top = Math.max(stage.top + GAP, anchor.top - GAP - card.height);
   }
   for (const box of avoid) {
-    if (!overlap({ ...card, left, top }, box)) continue;
+    if (!overlap({ left, top, width: card.width, height: card.height }, box)) continue;
     // Upwards from what lies at the stage's foot, downwards from what lies at its head.
     top =
       box.top + box.height / 2 > stage.top + stage.height / 2

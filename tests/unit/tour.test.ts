@@ -1,0 +1,38 @@
+import { describe, expect, it } from 'vitest';
+import { placeCard } from '../../web/ui/tour/place';
+
+const box = (left: number, top: number, width: number, height: number) => ({ left, top, width, height });
+const stage = box(0, 48, 1120, 500);
+const card = box(0, 0, 296, 120);
+const inside = ({ left, top }: { left: number; top: number }) =>
+  left >= 0 && top >= 48 && left + card.width <= 1120 && top + card.height <= 548;
+const free = ({ left, top }: { left: number; top: number }, other: ReturnType<typeof box>) =>
+  left + card.width <= other.left ||
+  left >= other.left + other.width ||
+  top + card.height <= other.top ||
+  top >= other.top + other.height;
+
+describe('the card of a step', () => {
+  it.each([
+    ['beside the list of poses', box(1130, 200, 280, 300), 'right'],
+    ['above the Generate button', box(1280, 560, 136, 44), 'bottom'],
+    ['above the Play button', box(60, 560, 44, 44), 'bottom'],
+    ['under the top bar', box(1050, 4, 100, 36), 'top'],
+    ['right of the drop target', box(32, 430, 340, 84), 'left'],
+    ['above a target as wide as the stage', box(12, 480, 1000, 60), 'bottom'],
+  ] as const)('is %s, on the stage', (_name, anchor, side) => {
+    const place = placeCard(card, anchor, stage, []);
+    expect(place.side).toBe(side);
+    expect(inside(place)).toBe(true);
+    expect(free(place, anchor)).toBe(true);
+  });
+
+  it('leaves the controls of the stage free', () => {
+    const tools = box(900, 490, 210, 44);
+    const chip = box(940, 64, 160, 44);
+    const place = placeCard(card, box(1280, 560, 136, 44), stage, [tools, chip]);
+    expect(free(place, tools)).toBe(true);
+    expect(free(place, chip)).toBe(true);
+    expect(inside(place)).toBe(true);
+  });
+});
