@@ -9,6 +9,8 @@ import type { BeatActions } from './beats';
 const END = { milliseconds: 2500, beats: 2.5 } as const;
 /** Somebody who asked for tapping and then does not tap has changed their mind, milliseconds. */
 const PATIENCE = 8000;
+/** A tap is never dated back further than this, milliseconds: an older stamp is of another clock. */
+const LATEST = 1000;
 
 /** Actions on tap tempo. */
 export function tapActions(context: Context, beats: BeatActions) {
@@ -68,7 +70,7 @@ export function tapActions(context: Context, beats: BeatActions) {
         wait(PATIENCE, stop);
         return;
       }
-      const late = Math.min(Math.max(performance.now() - stamp, 0), 500);
+      const late = Math.min(Math.max(performance.now() - stamp, 0), LATEST);
       const time = player.time() - (late / 1000) * player.speed;
       const times = [...(state.tapping.value?.times ?? []), time];
       const fit = fitTaps(times);
