@@ -57,9 +57,17 @@ import lock from 'lucide-static/icons/lock.svg?raw';
 import lockOpen from 'lucide-static/icons/lock-open.svg?raw';
 import distribute from 'lucide-static/icons/align-horizontal-distribute-center.svg?raw';
 import duplicate from 'lucide-static/icons/copy-plus.svg?raw';
+import bookmark from 'lucide-static/icons/bookmark.svg?raw';
+import more from 'lucide-static/icons/ellipsis.svg?raw';
+import rename from 'lucide-static/icons/text-cursor-input.svg?raw';
+import upload from 'lucide-static/icons/upload.svg?raw';
 import locate from 'lucide-static/icons/locate-fixed.svg?raw';
 
 const ICONS = {
+  bookmark,
+  more,
+  rename,
+  upload,
   lock,
   lockOpen,
   distribute,

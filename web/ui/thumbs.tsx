@@ -69,16 +69,18 @@ export function PosePicture({ rotations }: { rotations: readonly number[] }) {
   return <DrawnPose rotations={rotations} />;
 }
 
-function DrawnPose({ rotations }: { rotations: readonly number[] }) {
+/** A pose as a drawn figure; unless it is a `sketch`, that asks for the rendered one. */
+export function DrawnPose({ rotations, sketch = false }: { rotations: readonly number[]; sketch?: boolean }) {
   const thumbnails = useContext(ThumbnailsContext);
   const drawing = useRef<SVGSVGElement>(null);
   useEffect(() => {
+    if (sketch) return;
     const observer = new IntersectionObserver((entries) => {
       if (entries.some((entry) => entry.isIntersecting)) thumbnails.want(rotations);
     });
     observer.observe(drawing.current!);
     return () => observer.disconnect();
-  }, [rotations, thumbnails]);
+  }, [rotations, sketch, thumbnails]);
   const bones = useMemo(() => {
     const joints = forwardKinematics(poseToQuaternions(rotations), [0, 0, 0]);
     return PARENTS.map((parent, joint) => {

@@ -2,6 +2,8 @@ import { SheetHandle } from '../SheetHandle';
 import { useStore } from '../store-context';
 import type { Panel } from '../../app/state';
 import { ReportPanel } from '../report/ReportPanel';
+import { ImportPanel } from '../library/ImportPanel';
+import { SaveDraft } from '../library/SaveDraft';
 import { DancePanel } from './DancePanel';
 import { Library } from './Library';
 import { PoseEditor } from './PoseEditor';
@@ -15,7 +17,7 @@ const TABS: readonly { id: Panel; label: string }[] = [
 /** Poses to place, the settings of the dance, or how good it is. */
 export function Inspector() {
   const store = useStore();
-  const { panel, draft } = store.state;
+  const { panel, draft, poseImport } = store.state;
   const onKeyDown = (event: KeyboardEvent) => {
     const now = TABS.findIndex((tab) => tab.id === panel.value);
     const targets: Record<string, number> = {
@@ -69,7 +71,12 @@ export function Inspector() {
         ) : panel.value === 'report' ? (
           <ReportPanel />
         ) : draft.value ? (
-          <PoseEditor />
+          <>
+            <SaveDraft />
+            <PoseEditor />
+          </>
+        ) : poseImport.value ? (
+          <ImportPanel />
         ) : (
           <Library />
         )}
