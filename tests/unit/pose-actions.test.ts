@@ -109,6 +109,19 @@ describe('the editor’s own undo', () => {
     expect(draft().rotations).toEqual(REST);
   });
 
+  it('is kept by dropping it on the timeline; of a key pose that drops a copy', async () => {
+    const { store, draft } = await editor();
+    store.setJointDegrees(CHEST, [0, 12, 0]);
+    store.dropDraftAt(2.2);
+    expect(store.state.draft.value).toBeNull();
+    const [key] = store.state.document.value.keyPoses;
+    expect(key.time).toBe(2.2);
+    store.editKey(key.id);
+    store.dropDraftAt(4);
+    expect(draft().keyId).toBe(key.id);
+    expect(store.state.document.value.keyPoses.map(({ time }) => time)).toEqual([2.2, 4]);
+  });
+
   it('does not open a locked key pose', async () => {
     const { store } = await editor();
     store.keepDraft();
@@ -197,6 +210,15 @@ describe('copying', () => {
     expect(store.state.document.value.keyPoses.map((key) => key.rotations)).toEqual([shape, REST, shape]);
     store.undo();
     expect(store.state.document.value.keyPoses.map((key) => key.rotations)).toEqual([REST, REST, REST]);
+  });
+
+  it('takes a pose copied on the timeline into the editor', async () => {
+    const shape = pose({ left_elbow: [0, -1, 0] });
+    const { store, draft } = await editor();
+    store.addKey(shape, 2);
+    store.copyKeys();
+    store.pastePose();
+    expect(draft().rotations).toEqual(shape);
   });
 
   it('takes a limb to the other side when that side is chosen', async () => {

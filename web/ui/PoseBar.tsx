@@ -1,7 +1,9 @@
 import { jointLabel } from '../scene/pose-edit';
 import { useStore } from './store-context';
 import { Icon } from './Icon';
+import { startPoseDrag } from './pose-drag';
 import { tip } from './shortcuts';
+import { PosePicture } from './thumbs';
 
 /** Over the stage while a pose is edited: what to do, and the ways out. */
 export function PoseBar() {
@@ -29,9 +31,13 @@ export function PoseBar() {
       <button
         type="button"
         class="primary key-tone"
-        onClick={() => store.keepDraft()}
-        title={tip('add', existing ? 'Update' : 'Add to timeline')}
+        onPointerDown={(event) => startPoseDrag(event, draft, store, (time) => store.dropDraftAt(time))}
+        onClick={(event) => {
+          if (!event.currentTarget.dataset.dragged) store.keepDraft();
+        }}
+        title={`${tip('add', existing ? 'Update' : 'Add to timeline')}, or drag ${existing ? 'a copy' : 'it'} to a beat`}
       >
+        <PosePicture rotations={draft.rotations} />
         <Icon name="check" />
         {existing ? 'Update' : 'Add to timeline'}
       </button>

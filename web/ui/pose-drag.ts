@@ -12,8 +12,16 @@ const FLIGHT = 260;
 
 const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-/** Begins when the pointer has moved (mouse) or rested (touch); Escape or a drop elsewhere adds nothing. */
-export function startPoseDrag(event: PointerEvent, pose: LibraryPose, store: Store): void {
+/**
+ * Begins when the pointer has moved (mouse) or rested (touch); Escape or a drop elsewhere adds nothing.
+ * @param drop what to do with the pose at a time; by default it becomes a key pose
+ */
+export function startPoseDrag(
+  event: PointerEvent,
+  pose: Pick<LibraryPose, 'name' | 'rotations'>,
+  store: Store,
+  drop = (time: number): void => void store.addKey(pose.rotations, time, { name: pose.name, exact: true }),
+): void {
   if (event.button !== 0) return;
   const tile = event.currentTarget as HTMLElement;
   delete tile.dataset.dragged;
@@ -50,7 +58,7 @@ export function startPoseDrag(event: PointerEvent, pose: LibraryPose, store: Sto
     const time = dropTime.value;
     const dropped = ghost !== null && time !== null && next.type === 'pointerup';
     stop();
-    if (dropped) store.addKey(pose.rotations, time, { name: pose.name, exact: true });
+    if (dropped) drop(time);
   };
   const escape = (next: KeyboardEvent) => {
     if (next.key !== 'Escape' || !ghost) return;

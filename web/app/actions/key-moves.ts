@@ -160,6 +160,8 @@ export function keyMoves(context: Context, tools: KeyTools) {
       if (chosen.length === 0) return 0;
       clipboard = chosen;
       state.keysCopied.value = chosen.length;
+      // In the pose editor the same copy can be pasted as a pose.
+      state.poseClip.value = { rotations: chosen[0].rotations, limb: null, name: chosen[0].name ?? 'Key pose' };
       context.announce(`${chosen.length} key pose${chosen.length === 1 ? '' : 's'} copied.`);
       return chosen.length;
     },

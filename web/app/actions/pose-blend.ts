@@ -38,7 +38,7 @@ export function poseBlendActions(context: Context, desk: PoseDesk, math: PoseMat
       const key = state.document.value.keyPoses.find((each) => each.id === id);
       return key ? { name: key.name ?? 'Key pose', rotations: key.rotations } : null;
     }
-    const pose = state.poses.value.find((each) => each.id === id);
+    const pose = [...state.ownPoses.value, ...state.poses.value].find((each) => each.id === id);
     if (!pose) return null;
     // A pose of the library stands nowhere in particular: it is taken as it looks from where the figure looks.
     const towards = headingOfPose(desk.base(LABEL)) - headingOfPose(pose.rotations);

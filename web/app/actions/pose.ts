@@ -151,6 +151,16 @@ export function poseActions(context: Context, keys: Keys, math: PoseMath) {
       }
     },
 
+    /** Puts the draft on the timeline at a time. A new pose is thereby kept; of a key pose it is a copy, and editing goes on. */
+    dropDraftAt(time: number): void {
+      desk.settle();
+      const draft = state.draft.value;
+      if (!draft) return;
+      const copy = state.document.value.keyPoses.some((key) => key.id === draft.keyId);
+      const id = keys.addKey(draft.rotations, time, { name: draft.name || 'My pose', exact: true });
+      if (!copy) desk.keep(id);
+    },
+
     /** Leaves the editor; what was changed in it can be brought back. */
     closeDraft: desk.drop,
   };

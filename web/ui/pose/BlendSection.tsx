@@ -6,8 +6,9 @@ import { Fold } from './Fold';
 /** Blends the pose with another one: live, and one step however far the slider goes. */
 export function BlendSection() {
   const store = useStore();
-  const { poses, document, draft, poseBlend, poseClip } = store.state;
+  const { document, draft, poseBlend, poseClip } = store.state;
   const source = useSignal<BlendSource | ''>('');
+  const poses = useComputed(() => [...store.state.ownPoses.value, ...store.state.poses.value]);
   const groups = useComputed(() => [...new Set(poses.value.map((pose) => pose.group))]);
   const blend = poseBlend.value;
   const percent = Math.round((blend?.amount ?? 0) * 100);
