@@ -236,3 +236,38 @@ test('the part to dance to is set by drag and keyboard, kept to by the player, a
   await inMenu(page, 'Whole song');
   expect((await project(page)).trim).toBeNull();
 });
+
+test.describe('on a phone', () => {
+  test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+
+  test('a beat is dragged with a finger, and the tempo is tapped', async ({ page }) => {
+    const beats = await song(page);
+    const box = (await page.locator('[data-beat="4"]').boundingBox())!;
+    const finger = await page.context().newCDPSession(page);
+    const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', dx = 0) =>
+      finger.send('Input.dispatchTouchEvent', {
+        type,
+        touchPoints: type === 'touchEnd' ? [] : [{ x: box.x + box.width / 2 + dx, y: box.y + box.height / 2 }],
+      });
+    await touch('touchStart');
+    for (const dx of [4, 8, 9, 10]) await touch('touchMove', dx);
+    await touch('touchEnd');
+    const dragged = (await grid(page))!;
+    expect(dragged.beats[4]).toBeGreaterThan(beats[4] + 0.03);
+    expect(dragged.beats[5]).toBe(beats[5]);
+
+    const tap = page.locator('.bar-button.tap');
+    await tap.tap();
+    await tap.tap();
+    await expect(tap).toHaveText('3 more taps');
+    await page.getByRole('button', { name: 'Beats', exact: true }).tap();
+    const menu = page.getByRole('dialog', { name: 'Beats' });
+    await expect(menu).toBeVisible();
+    const inside = (await menu.boundingBox())!;
+    expect(inside.x).toBeGreaterThanOrEqual(0);
+    expect(inside.x + inside.width).toBeLessThanOrEqual(390);
+    for (const button of await menu.getByRole('button').all()) {
+      expect((await button.boundingBox())!.height).toBeGreaterThanOrEqual(44);
+    }
+  });
+});

@@ -119,6 +119,12 @@ describe('changes of the beats', () => {
     await vi.advanceTimersByTimeAsync(1000);
     expect(measure).toHaveBeenCalledTimes(1);
     expect(measure.mock.calls[0][2]).toBe(store.state.grid.value);
+    store.undo();
+    store.undo();
+    await vi.advanceTimersByTimeAsync(1000);
+    expect(store.state.document.value.grid).toBeNull();
+    expect(measure).toHaveBeenCalledTimes(2);
+    expect(measure.mock.calls[1][2]).toBe(store.state.song.value!.grid);
   });
 });
 

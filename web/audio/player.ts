@@ -1,6 +1,7 @@
 /** The clock of the house: what `time()` says is what is heard, and everything that moves asks it. */
 import { HeardClock } from './heard-clock';
 import { positionAt, type LoopRange, type Segment } from './segment';
+import { SongSource } from './song-source';
 
 export type { LoopRange } from './segment';
 
@@ -18,8 +19,6 @@ export type ContextFactory = () => AudioContext;
 
 /** Sources start this much in the future, so that the start is exact to the sample. */
 const START_DELAY = 0.02;
-/** Fade in and out at every start and stop, so that seeks do not click. */
-const FADE = 0.006;
 /** Slowest and fastest playback. */
 export const SPEED_RANGE = { min: 0.25, max: 1.5 } as const;
 /** The shortest loop, seconds. */
@@ -38,7 +37,7 @@ export class Player {
   readonly #listeners = new Set<() => void>();
   #context: AudioContext | null = null;
   #master: GainNode | null = null;
-  #source: { node: AudioBufferSourceNode; fade: GainNode } | null = null;
+  #source: SongSource | null = null;
   #buffer: AudioBuffer | null = null;
   #duration = 0;
   #playing = false;
@@ -323,31 +322,13 @@ export class Player {
   }
 
   #startSource(from: number, position: number): Segment {
-    const context = this.#context!;
-    const node = context.createBufferSource();
-    node.buffer = this.#buffer;
-    node.playbackRate.value = this.#speed;
-    if (this.#loop) {
-      node.loop = true;
-      node.loopStart = this.#loop.start;
-      node.loopEnd = this.#loop.end;
-    }
-    const fade = context.createGain();
-    fade.gain.setValueAtTime(0, from);
-    fade.gain.linearRampToValueAtTime(1, from + FADE);
-    node.connect(fade).connect(this.#master!);
-    const offset = Math.min(position, Math.max(0, this.#duration - 1e-3));
-    if (this.#bounds && !this.#loop) {
-      // The sound ends by itself, also where the page is in the background and nothing ticks.
-      const length = Math.max(0, this.#last - offset);
-      const end = from + length / this.#speed;
-      fade.gain.setValueAtTime(1, Math.max(from + FADE, end - FADE));
-      fade.gain.linearRampToValueAtTime(0, Math.max(from + FADE, end));
-      node.start(from, offset, length);
-    } else {
-      node.start(from, offset);
-    }
-    this.#source = { node, fade };
+    this.#source = new SongSource(this.#context!, this.#master!, this.#buffer!, {
+      from,
+      position: Math.min(position, Math.max(0, this.#duration - 1e-3)),
+      rate: this.#speed,
+      loop: this.#loop,
+      end: this.#bounds ? this.#last : null,
+    });
     return this.#segment('audio', from, position);
   }
 
@@ -356,13 +337,8 @@ export class Player {
   }
 
   #stopSource(at = this.#context?.currentTime ?? 0): void {
-    const source = this.#source;
-    if (!source) return;
+    this.#source?.stop(at);
     this.#source = null;
-    source.fade.gain.setValueAtTime(1, at);
-    source.fade.gain.linearRampToValueAtTime(0, at + FADE);
-    source.node.stop(at + FADE);
-    source.node.onended = () => source.fade.disconnect();
   }
 
   #ensureContext(): AudioContext {

@@ -3,7 +3,6 @@ import { effect } from '@preact/signals';
 import { Metronome } from '../../audio/metronome';
 import type { ProjectDocument } from '../../core/document';
 import {
-  beatPosition,
   deleteBeat,
   doubleGrid,
   firstBar,
@@ -40,16 +39,19 @@ export function beatActions(context: Context, measureShown: () => Promise<void>)
   effect(() => metronome.follow(state.grid.value));
   measureOnChange();
 
+  /** The report follows the visitor's own beats, undone ones too; a new song brings its own report. */
   function measureOnChange(): void {
-    let seen: BeatGrid | null = null;
+    let seen: { hash?: string; grid: BeatGrid | null } = { grid: null };
     let timer: ReturnType<typeof setTimeout> | undefined;
     effect(() => {
-      const grid = state.grid.value;
-      if (grid === seen) return;
-      seen = grid;
+      const hash = state.song.value?.reference.hash;
+      const { grid } = state.document.value;
+      const changed = hash === seen.hash && grid !== seen.grid;
+      seen = { hash, grid };
+      if (!changed) return;
       clearTimeout(timer);
       timer = setTimeout(() => {
-        if (state.report.peek() && state.document.peek().grid !== null) void measureShown();
+        if (state.report.peek()) void measureShown();
       }, MEASURE_DELAY);
     });
   }
@@ -226,9 +228,6 @@ export function beatActions(context: Context, measureShown: () => Promise<void>)
       if (on && services.player.muted) context.notify('info', 'The sound is off: turn it on to hear the click.');
       context.announce(on ? 'Click on.' : 'Click off.');
     },
-
-    /** The beat that a time falls on, with fractions; null without beats. */
-    beatAt: (time: number): number | null => (state.grid.value ? beatPosition(state.grid.value, time) : null),
   };
 }
 

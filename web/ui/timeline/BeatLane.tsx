@@ -110,7 +110,7 @@ function BeatTick({ tick, x, tabbable }: { tick: Tick; x: number; tabbable: bool
       tabIndex={tabbable ? 0 : -1}
       aria-label={name}
       aria-keyshortcuts="ArrowLeft ArrowRight ArrowUp ArrowDown Delete B"
-      title={`${name}. Drag or arrows move it, with Shift all later ones too; B: bar 1 here; Delete.`}
+      title={`${name}. Drag it, with Shift all later beats too; arrows move it by 10 ms; B: bar 1 here; Delete removes it.`}
       style={{ left: `${x}px` }}
       onPointerDown={(event) => beginBeatDrag(event, index, store)}
       onClick={(event) => {
