@@ -17,6 +17,7 @@ import './style.css';
 import './style-layout.css';
 import './style-timeline.css';
 import './style-beats.css';
+import './style-ranges.css';
 import './style-panels.css';
 import './style-pose.css';
 import './style-library.css';

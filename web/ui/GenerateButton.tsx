@@ -26,13 +26,18 @@ export function GenerateButton() {
   }
   const generated = dance.value?.kind === 'generated' || dance.value?.kind === 'demo';
   const fresh = generated && !stale.value;
+  const ranges = store.state.document.value.ranges.filter(({ chosen }) => chosen !== null).length;
+  const takes = ranges > 0 ? ` and the takes of its ${ranges === 1 ? 'range' : `${ranges} ranges`}` : '';
   return (
     <button
       type="button"
       class={`generate ${fresh ? 'fresh' : ''}`}
       disabled={!song.value || songJob.value !== null}
       onClick={() => void store.generateForPage()}
-      title={tip('generate', fresh ? 'The dance is up to date. Generate it again' : 'Generate the dance')}
+      title={tip(
+        'generate',
+        fresh ? `The dance is up to date. Generate it${takes} again` : `Generate the dance${takes}`,
+      )}
     >
       <Icon name="sparkles" />
       <span class="generate-text">Generate</span>

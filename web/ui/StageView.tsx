@@ -4,6 +4,7 @@ import { framePose, type MutableFramePose } from '../core/motion';
 import type { Motion } from '../core/types';
 import type { JointHover, Stage } from '../scene/stage';
 import type { Store } from '../app/store';
+import { CompareBadge } from './CompareBadge';
 import { Icon } from './Icon';
 import { chooseFile } from './files';
 import { onStageKey, type PosingStage } from './pose/stage-keys';
@@ -58,6 +59,7 @@ export function StageView() {
       {draft.value ? <Posing hover={hover} /> : (!song.value || song.value.demo) && <Welcome />}
       <SoundChip />
       <WorkChip />
+      <CompareBadge />
       <div class="stage-tools">
         <OverlayTools />
         <CameraTools />

@@ -164,6 +164,13 @@ export function rangeActions(context: Context, dances: DanceActions) {
         ranges: document.ranges.filter(({ id }) => id !== rangeId),
       }));
     },
+
+    /** Deletes all ranges with their takes. */
+    async deleteRanges(): Promise<void> {
+      if (state.document.value.ranges.length === 0) return;
+      context.announce('Back to the whole dance.');
+      await change('Delete all ranges', (document) => ({ ...document, ranges: [] }));
+    },
   };
   return actions;
 }

@@ -1,5 +1,7 @@
+import { rangeName } from '../../app/range-name';
 import { useStore } from '../store-context';
 import { Icon } from '../Icon';
+import { tip } from '../shortcuts';
 import { PosePicture } from '../thumbs';
 import { TakeStepper } from '../report/TakeStepper';
 import { TradeOffPlot } from '../report/TradeOffPlot';
@@ -17,9 +19,10 @@ const variationText = (value: number) =>
 /** The dials: key strength moves the dance at hand, the others the next one. */
 export function DancePanel() {
   const store = useStore();
-  const { document, loop, generation, dance } = store.state;
+  const { document, loop, generation, dance, grid, compare } = store.state;
   const { dials } = document.value;
   const range = loop.value;
+  const chosen = document.value.ranges.filter((each) => each.chosen !== null).length;
   return (
     <>
       <SeedClips />
@@ -46,10 +49,27 @@ export function DancePanel() {
             type="button"
             class="secondary full"
             disabled={generation.value.status !== 'idle'}
+            title={tip('regenerate', 'Another take of the selected range only')}
             onClick={() => void store.regenerateRange(range)}
           >
-            <Icon name="repeat" />
-            Generate only the loop
+            <Icon name="sparkles" />
+            Regenerate {rangeName(grid.value, range)}
+          </button>
+        )}
+        {chosen > 0 && (
+          <p class="ranges-note">
+            <span>
+              {chosen === 1 ? 'One range has' : `${chosen} ranges have`} a take of {chosen === 1 ? 'its' : 'their'} own,
+              danced again with the whole.
+            </span>
+            <button type="button" class="quiet" onClick={() => void store.deleteRanges()}>
+              Delete {chosen === 1 ? 'it' : 'them'}
+            </button>
+          </p>
+        )}
+        {dance.value && dance.value.kind !== 'preview' && !compare.value && (
+          <button type="button" class="quiet compare-start" title={tip('compare')} onClick={() => store.compare()}>
+            Hold this dance to compare (A/B)
           </button>
         )}
       </section>
