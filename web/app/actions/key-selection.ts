@@ -11,6 +11,7 @@ export function keySelection({ state }: Context) {
   return {
     /** Selects one key pose, or none; `extend` adds it or takes it out. */
     selectKey(id: string | null, extend = false): void {
+      if (id !== null && !keys().some((key) => key.id === id)) return;
       if (id === null) state.selection.value = new Set();
       else if (!extend) state.selection.value = new Set([id]);
       else {

@@ -1,10 +1,11 @@
 import { useComputed, useSignalEffect } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
+import { findSections } from '../../core/sections';
 import { useStore } from '../store-context';
 import { BeatLane } from './BeatLane';
 import { CurveLane } from './CurveLane';
 import { drawTimeline } from './draw';
-import { LANES, LANES_HEIGHT } from './geometry';
+import { keyWidths, LANES, LANES_HEIGHT } from './geometry';
 import { bindGestures } from './gestures';
 import { KeyLane } from './KeyLane';
 import { LoopHandles } from './LoopHandles';
@@ -42,6 +43,13 @@ export function Timeline() {
     }
   });
 
+  const keys = useComputed(() => state.document.value.keyPoses);
+  const scale = useComputed(() => state.view.value.pixelsPerSecond);
+  const widths = useComputed(() => keyWidths(keys.value, scale.value));
+  const heard = useComputed(() => (state.song.value?.complete ? state.song.value.features : null));
+  const sections = useComputed(() =>
+    heard.value && state.grid.value ? findSections(heard.value, state.grid.value, state.duration.value) : [],
+  );
   const picture = useComputed(() => {
     const partial = state.partial.value;
     const dance = state.dance.value;
@@ -55,7 +63,9 @@ export function Timeline() {
       features: state.song.value?.features ?? null,
       grid: state.grid.value,
       loop: state.loop.value,
-      keys: state.document.value.keyPoses,
+      keys: keys.value,
+      widths: widths.value,
+      sections: sections.value,
       selection: state.selection.value,
       danced: generating ? (partial ? partial.frames / partial.fps : 0) : done,
       stale: state.stale.value,

@@ -2,8 +2,10 @@
 import { lowerBound } from '../../app/snapping';
 import type { LoopRange } from '../../audio/player';
 import type { TimelineView } from '../../app/state';
+import type { Section } from '../../core/sections';
 import type { BeatGrid, Features, KeyPose, Waveform } from '../../core/types';
-import { barStep, keyWidths, LANES, LANES_HEIGHT, timeToX, xToTime } from './geometry';
+import { buildPyramid, forEachColumn, type Pyramid } from './pyramid';
+import { barStep, LANES, LANES_HEIGHT, timeToX, xToTime } from './geometry';
 
 /** What is drawn. */
 export interface Picture {
@@ -14,7 +16,11 @@ export interface Picture {
   features: Features | null;
   grid: BeatGrid | null;
   loop: LoopRange | null;
+  /** Parts of the song; none where they are not clear. */
+  sections: readonly Section[];
   keys: readonly KeyPose[];
+  /** Of `keyWidths` at this scale. */
+  widths: readonly number[];
   selection: ReadonlySet<string>;
   /** Seconds up to which the dance is made, and whether it is up to date. */
   danced: number;
@@ -44,19 +50,38 @@ const MIN_BEAT_PIXELS = 9;
 const MIN_BAR_PIXELS = 18;
 const MIN_NUMBER_PIXELS = 44;
 
+/** How strongly parts of the song are shaded, by their letter. */
+const SECTION_SHADES = [0.02, 0.1, 0.055, 0.14];
 /** A song quieter than this is drawn quiet. */
 const QUIET = 0.05;
 
-const peaks = new WeakMap<Waveform, number>();
+const waves = new WeakMap<Waveform, { pyramid: Pyramid; peak: number }>();
 
-/** The loudest sample, so that every song fills its lane. */
-function peakOf(waveform: Waveform): number {
-  let peak = peaks.get(waveform);
-  if (peak === undefined) {
-    peak = waveform.max.reduce((most, value, i) => Math.max(most, value, -waveform.min[i]), 0);
-    peaks.set(waveform, peak);
+/** A waveform at every scale, and its loudest sample, so that every song fills its lane. */
+function waveOf(waveform: Waveform): { pyramid: Pyramid; peak: number } {
+  let wave = waves.get(waveform);
+  if (!wave) {
+    const pyramid = buildPyramid(waveform.min, waveform.max);
+    const top = pyramid.levels[pyramid.levels.length - 1];
+    wave = { pyramid, peak: Math.max(0, top.max[0] ?? 0, -(top.min[0] ?? 0)) };
+    waves.set(waveform, wave);
   }
-  return peak;
+  return wave;
+}
+
+const onsets = new WeakMap<Features, Pyramid>();
+
+function onsetOf(features: Features): Pyramid {
+  let pyramid = onsets.get(features);
+  if (!pyramid) {
+    const column = features.names.indexOf('onset');
+    const onset = new Float32Array(features.frames);
+    if (column >= 0)
+      for (let t = 0; t < onset.length; t += 1) onset[t] = features.data[t * features.names.length + column];
+    pyramid = buildPyramid(onset, onset);
+    onsets.set(features, pyramid);
+  }
+  return pyramid;
 }
 
 type Brush = CanvasRenderingContext2D;
@@ -72,6 +97,7 @@ export function drawTimeline(canvas: HTMLCanvasElement, picture: Picture, ratio:
   drawLanes(brush, picture);
   drawLoop(brush, picture);
   drawBeats(brush, picture);
+  drawSections(brush, picture);
   drawWaveform(brush, picture);
   drawOnsets(brush, picture);
   drawKeyStems(brush, picture);
@@ -148,6 +174,24 @@ function drawSeconds(brush: Brush, view: TimelineView, width: number, duration: 
   }
 }
 
+/** Parts of the song as shades behind the wave, named at their beginning, or at the edge while they are in sight. */
+function drawSections(brush: Brush, { sections, view, width }: Picture): void {
+  const { top, height } = LANES.wave;
+  brush.font = '600 10px system-ui, sans-serif';
+  brush.textBaseline = 'top';
+  sections.forEach(({ start, end, label }, i) => {
+    const left = timeToX(view, start);
+    const right = timeToX(view, end);
+    if (right < 0 || left > width) return;
+    const shade = SECTION_SHADES[(label.charCodeAt(0) - 65) % SECTION_SHADES.length];
+    brush.fillStyle = `rgba(76, 201, 240, ${shade})`;
+    brush.fillRect(Math.max(0, left), top + 1, Math.min(width, right) - Math.max(0, left), height - 1);
+    brush.fillStyle = COLOURS.text;
+    if (i > 0) brush.fillRect(Math.round(left), top + 1, 1, height - 1);
+    if (right - Math.max(0, left) > 18) brush.fillText(label, Math.max(0, left) + 5, top + 3);
+  });
+}
+
 function drawWaveform(brush: Brush, { waveform, view, width, duration }: Picture): void {
   const middle = LANES.wave.top + LANES.wave.height / 2;
   const reach = LANES.wave.height / 2 - 4;
@@ -156,53 +200,43 @@ function drawWaveform(brush: Brush, { waveform, view, width, duration }: Picture
   const start = Math.max(0, timeToX(view, 0));
   brush.fillRect(start, Math.round(middle), end - start, 1);
   if (!waveform) return;
-  const { min, max, rate } = waveform;
-  const gain = 1 / Math.max(QUIET, peakOf(waveform));
+  const { pyramid, peak } = waveOf(waveform);
+  const gain = reach / Math.max(QUIET, peak);
   brush.fillStyle = COLOURS.music;
-  const perPixel = rate / view.pixelsPerSecond;
-  for (let x = Math.floor(start); x < end; x += 1) {
-    const first = Math.floor(view.start * rate + x * perPixel);
-    const last = Math.min(max.length, Math.max(first + 1, Math.floor(view.start * rate + (x + 1) * perPixel)));
-    if (first >= max.length) break;
-    let low = 0;
-    let high = 0;
-    for (let i = Math.max(0, first); i < last; i += 1) {
-      if (min[i] < low) low = min[i];
-      if (max[i] > high) high = max[i];
-    }
-    const top = middle - Math.min(1, high * gain) * reach;
-    const bottom = middle - Math.max(-1, low * gain) * reach;
-    if (bottom - top > 0.5) brush.fillRect(x, top, 1, bottom - top);
-  }
+  forEachColumn(
+    pyramid,
+    waveform.rate / view.pixelsPerSecond,
+    firstColumn(view),
+    Math.ceil(end),
+    (column, low, high) => {
+      const top = Math.max(-reach, -high * gain);
+      const tall = Math.min(reach, -low * gain) - top;
+      if (tall > 0.5) brush.fillRect(column, middle + top, 1, tall);
+    },
+  );
 }
+
+/** Pixel columns are counted from the song's start. */
+const firstColumn = (view: TimelineView) => Math.round(view.start * view.pixelsPerSecond);
 
 function drawOnsets(brush: Brush, { features, view, width }: Picture): void {
   if (!features) return;
-  const columns = features.names.length;
-  const onset = features.names.indexOf('onset');
-  if (onset < 0) return;
   const { top, height } = LANES.onset;
   brush.fillStyle = COLOURS.musicDim;
   const perPixel = features.fps / view.pixelsPerSecond;
-  const bar = Math.max(1, Math.floor(1 / perPixel) - 1);
-  const step = Math.max(1, Math.floor(1 / perPixel));
-  for (let x = 0; x < width; x += step) {
-    const first = Math.floor(view.start * features.fps + x * perPixel);
-    const last = Math.min(
-      features.frames,
-      Math.max(first + 1, Math.floor(view.start * features.fps + (x + 1) * perPixel)),
-    );
-    if (first >= features.frames) break;
-    let peak = 0;
-    for (let i = Math.max(0, first); i < last; i += 1) peak = Math.max(peak, features.data[i * columns + onset]);
-    const tall = peak * (height - 4);
-    if (tall > 0.5) brush.fillRect(x, top + height - 2 - tall, bar, tall);
-  }
+  // Far in, a frame is several pixels wide: a bar each, with a gap.
+  const wide = Math.max(1, Math.floor(1 / perPixel));
+  const bar = Math.max(1, wide - 1);
+  const first = Math.floor(firstColumn(view) / wide);
+  const shift = first * wide - firstColumn(view);
+  forEachColumn(onsetOf(features), perPixel * wide, first, Math.ceil(width / wide) + 1, (column, _, high) => {
+    const tall = high * (height - 4);
+    if (tall > 0.5) brush.fillRect(column * wide + shift, top + height - 2 - tall, bar, tall);
+  });
 }
 
 /** A line from each key pose up to its beat; key poses that have no room for an element are a mark on it. */
-function drawKeyStems(brush: Brush, { keys, view, width, selection }: Picture): void {
-  const widths = keyWidths(keys, view.pixelsPerSecond);
+function drawKeyStems(brush: Brush, { keys, widths, view, width, selection }: Picture): void {
   const middle = LANES.keys.top + LANES.keys.height / 2;
   keys.forEach((key, i) => {
     const x = Math.round(timeToX(view, key.time));
