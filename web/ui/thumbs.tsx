@@ -44,6 +44,12 @@ export class Thumbnails {
     void this.#work();
   }
 
+  /** Takes back what is out of sight again before its turn came: who scrolls fast waits for what is seen. */
+  unwant(rotations: readonly number[]): void {
+    const at = this.#queue.indexOf(rotations);
+    if (at >= 0) this.#queue.splice(at, 1);
+  }
+
   async #work(): Promise<void> {
     if (this.#busy || !this.#thumbnailer) return;
     this.#busy = true;
@@ -76,7 +82,8 @@ export function DrawnPose({ rotations, sketch = false }: { rotations: readonly n
   useEffect(() => {
     if (sketch) return;
     const observer = new IntersectionObserver((entries) => {
-      if (entries.some((entry) => entry.isIntersecting)) thumbnails.want(rotations);
+      if (entries.at(-1)!.isIntersecting) thumbnails.want(rotations);
+      else thumbnails.unwant(rotations);
     });
     observer.observe(drawing.current!);
     return () => observer.disconnect();

@@ -124,12 +124,10 @@ export function ImportPanel() {
           Add to timeline
         </button>
         <button type="button" class="secondary" onClick={() => store.editFrame()}>
-          <Icon name="pencil" />
           Edit
         </button>
-        <button type="button" class="secondary" onClick={() => store.saveFrame()}>
-          <Icon name="bookmark" />
-          Save to My poses
+        <button type="button" class="secondary" onClick={() => store.saveFrame()} title="Save to My poses">
+          Save
         </button>
       </div>
     </section>
