@@ -1,8 +1,11 @@
 import { describe, expect, it } from 'vitest';
 import { forwardKinematics, JOINT_COUNT, jointIndex, PARENTS, worldRotations } from '../../web/core/skeleton';
 import { angleBetween, axisAngleToQuaternion, multiply, poseToQuaternions } from '../../web/core/rotation';
+import { createIkSolver } from '../../web/core/ik';
 import { CAPSULES, pickBody, placePoint, rayCapsule, standingRoot, SUPPORTS } from '../../web/scene/body-points';
+import { Footing } from '../../web/scene/footing';
 import { headingOf } from '../../web/scene/heading';
+import { IkDrag, reachPose } from '../../web/scene/ik-drag';
 import { jointLabel, PoseEdit, rotateLocal } from '../../web/scene/pose-edit';
 import { REST_HEIGHT } from '../../web/scene/rest';
 
@@ -143,5 +146,95 @@ describe('heading', () => {
     const pose = rest();
     pose[0] = Math.PI / 2;
     expect(headingOf(poseToQuaternions(pose))).toBeCloseTo(0, 5);
+  });
+});
+
+describe('dragging with the body following', () => {
+  const tools = { limits: true, mirror: false, pins: new Set<number>() };
+  const stand = (pose: number[] = rest()) => {
+    const quaternions = poseToQuaternions(pose);
+    return { root: standingRoot(quaternions), quaternions };
+  };
+  const places = (pose: { root: ArrayLike<number>; quaternions: ArrayLike<number> }) =>
+    forwardKinematics(pose.quaternions, pose.root);
+  const at = (joints: Float32Array, name: string) => Array.from(joints.subarray(jointIndex(name) * 3).subarray(0, 3));
+  const gap = (a: ArrayLike<number>, b: ArrayLike<number>) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  const follow = (drag: IkDrag, way: [number, number, number], steps = 30) => {
+    for (let i = 1; i <= steps + 20; i++) drag.to(drag.from.map((c, k) => c + (way[k] * Math.min(i, steps)) / steps));
+  };
+
+  it('takes a hand along and leaves the feet on the floor where they are', () => {
+    const start = stand();
+    const before = places(start);
+    const drag = new IkDrag(createIkSolver(), start, jointIndex('left_wrist'), tools);
+    follow(drag, [-0.3, 0.25, 0.35]);
+    const after = places(drag.pose);
+    expect(
+      gap(
+        at(after, 'left_wrist'),
+        drag.from.map((c, k) => c + [-0.3, 0.25, 0.35][k]),
+      ),
+    ).toBeLessThan(0.01);
+    for (const ankle of ['left_ankle', 'right_ankle'])
+      expect(gap(at(after, ankle), at(before, ankle))).toBeLessThan(0.002);
+    expect(drag.settled).toBe(true);
+  });
+
+  it('squats on flat feet when the hips are pulled down, and kept, nothing jumps', () => {
+    const start = stand();
+    const before = places(start);
+    const drag = new IkDrag(createIkSolver(), start, 0, tools);
+    follow(drag, [0.04, -0.35, 0]);
+    const after = places(drag.pose);
+    for (const name of ['left_ankle', 'right_ankle', 'left_foot', 'right_foot'])
+      expect(gap(at(after, name), at(before, name)), name).toBeLessThan(0.015);
+    expect(drag.pose.root[1]).toBeCloseTo(start.root[1] - 0.35, 2);
+    const footing = new Footing(false);
+    footing.settle(drag.pose.root);
+    expect(gap(footing.root(drag.pose.quaternions), drag.pose.root)).toBeLessThan(1e-6);
+    for (let i = 0; i < 30; i++) footing.update(1 / 60);
+    expect(footing.settling).toBe(false);
+    expect(gap(footing.root(drag.pose.quaternions), drag.pose.root)).toBeLessThan(0.02);
+    footing.reset();
+    expect(footing.root(drag.pose.quaternions)[0]).toBe(0);
+  });
+
+  it('moves both sides alike when mirrored', () => {
+    const drag = new IkDrag(createIkSolver(), stand(), jointIndex('left_wrist'), { ...tools, mirror: true });
+    follow(drag, [-0.25, 0.3, 0.2]);
+    const joints = places(drag.pose);
+    const [left, right] = [at(joints, 'left_wrist'), at(joints, 'right_wrist')];
+    expect(gap([-left[0], left[1], left[2]], right)).toBeLessThan(0.01);
+  });
+
+  it('turns the elbow about the arm while the hand stays', () => {
+    const start = stand(bent());
+    const before = places(start);
+    const drag = new IkDrag(createIkSolver(), start, jointIndex('left_elbow'), tools);
+    follow(drag, [0, 0.3, -0.1]);
+    const after = places(drag.pose);
+    expect(gap(at(after, 'left_wrist'), at(before, 'left_wrist'))).toBeLessThan(0.002);
+    expect(at(after, 'left_elbow')[1]).toBeGreaterThan(at(before, 'left_elbow')[1] + 0.03);
+  });
+
+  it('holds what is pinned', () => {
+    const start = stand();
+    const wrist = jointIndex('right_wrist');
+    const drag = new IkDrag(createIkSolver(), start, 0, { ...tools, pins: new Set([wrist]) });
+    follow(drag, [0, -0.2, 0.05]);
+    expect(gap(at(places(drag.pose), 'right_wrist'), at(places(start), 'right_wrist'))).toBeLessThan(0.01);
+  });
+
+  it('does not push a foot through the floor', () => {
+    const start = stand();
+    const drag = new IkDrag(createIkSolver(), start, jointIndex('left_ankle'), tools);
+    follow(drag, [0.2, -0.4, 0]);
+    expect(at(places(drag.pose), 'left_ankle')[1]).toBeGreaterThan(at(places(start), 'left_ankle')[1] - 0.01);
+  });
+
+  it('gives a pose for typed places too', () => {
+    const pose = reachPose(rest(), jointIndex('right_wrist'), [-0.3, 1.6, 0.3], tools);
+    const joints = places(stand(pose));
+    expect(gap(at(joints, 'right_wrist'), [-0.3, 1.6, 0.3])).toBeLessThan(0.02);
   });
 });

@@ -5,5 +5,6 @@ import type { PoseMath } from './actions/pose-limits';
 /** Joint limits and inverse kinematics of the core. */
 export const poseMath: PoseMath = {
   clampRotation,
-  reach: async () => null,
+  // The solver comes with the stage; until then nothing needs it.
+  reach: async (...wish) => (await import('../scene/ik-drag')).reachPose(...wish),
 };

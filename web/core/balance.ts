@@ -81,6 +81,11 @@ const THICKNESS: readonly (readonly [string, number])[] = [
   ]),
 ];
 const SUPPORTING = THICKNESS.map(([name, height]) => ({ joint: jointIndex(name), height }));
+/** Height of a joint that lies or stands on the floor, metres. */
+export function restingHeight(joint: number): number {
+  return SUPPORTING.find((support) => support.joint === joint)?.height ?? 0.05;
+}
+
 /** A joint this much higher still counts as on the floor, metres. */
 const NEAR = 0.025;
 

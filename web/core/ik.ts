@@ -16,6 +16,7 @@ import {
   swivelLimb,
   type PlacedBody,
 } from './ik-limb';
+import { distanceTo, followPins, giveWay, stanceOf, tether, type Stance, type Tether } from './ik-stance';
 import { directions, limitExcess } from './joint-limits';
 import { angleBetween, axisAngleToQuaternion, slerp, type Numbers } from './rotation';
 import { forwardKinematics, JOINT_COUNT } from './skeleton';
@@ -65,8 +66,6 @@ export interface IkSolver {
 const TOLERANCE = 8e-4;
 const MOST_ROUNDS = 24;
 const FEWEST_ROUNDS = 2;
-/** Share of a limb's length that pins leave it. */
-const EASY_REACH = 0.9955;
 /** Share of the way back to the rest pose in the first rounds. */
 const LEANING = 0.08;
 /** Share of the way that the weight is brought back over its spot in one round. */
@@ -105,10 +104,12 @@ function solve(
   const moveRoot = !pelvis && pins.length > 0;
 
   const tethers = pelvis || moveRoot ? pins.flatMap((pin) => tether(body, pin)) : [];
+  const feet = pelvis || moveRoot ? stanceOf(body, pins) : [];
+  const weight = pelvis ? centreOfMass(rest ? forwardKinematics(rest.quaternions, rest.root) : body.joints) : null;
   if (pelvis) body.root.set(Array.from(pelvis.position));
   place(body);
 
-  const work: Work = { chain, body, goals: held, targets, tethers, moveRoot, rest };
+  const work: Work = { chain, body, goals: held, targets, tethers, feet, weight, moveRoot, rest };
   approach(work);
   if (maxTurn === undefined) {
     startAfresh(work);
@@ -131,12 +132,15 @@ interface Work {
   goals: readonly IkGoal[];
   targets: readonly IkTarget[];
   tethers: readonly Tether[];
+  feet: readonly Stance[];
+  /** Where the weight was, for a dragged pelvis. */
+  weight: Numbers | null;
   moveRoot: boolean;
   rest?: FramePose;
 }
 
 /** Rounds of least squares for the whole body and closed form for the limbs, until every goal is met. */
-function approach({ chain, body, goals, targets, tethers, moveRoot, rest }: Work): void {
+function approach({ chain, body, goals, targets, tethers, feet, weight: over, moveRoot, rest }: Work): void {
   const eased = new Set<number>();
   const weight = rest && moveRoot ? centreOfMass(forwardKinematics(rest.quaternions, rest.root)) : null;
   for (let round = 0; round < MOST_ROUNDS; round++) {
@@ -150,7 +154,12 @@ function approach({ chain, body, goals, targets, tethers, moveRoot, rest }: Work
     }
     followPins(body, tethers);
     fitAll(body, goals);
-    if (errorOf(body, goals) < TOLERANCE && round + 1 >= FEWEST_ROUNDS) return;
+    const stands = giveWay(body, feet, over);
+    if (!stands) {
+      followPins(body, tethers);
+      fitAll(body, goals);
+    }
+    if (stands && errorOf(body, goals) < TOLERANCE && round + 1 >= FEWEST_ROUNDS) return;
   }
 }
 
@@ -164,17 +173,9 @@ function slackOf(quaternions: Numbers): Float32Array {
   );
 }
 
-function distance(joints: Numbers, joint: number, position: Numbers): number {
-  return Math.hypot(
-    joints[joint * 3] - position[0],
-    joints[joint * 3 + 1] - position[1],
-    joints[joint * 3 + 2] - position[2],
-  );
-}
-
 function errorOf({ joints }: PlacedBody, goals: readonly IkGoal[]): number {
   let worst = 0;
-  for (const { joint, position } of goals) worst = Math.max(worst, distance(joints, joint, position));
+  for (const { joint, position } of goals) worst = Math.max(worst, distanceTo(joints, joint, position));
   return worst;
 }
 
@@ -197,37 +198,6 @@ function lean(body: PlacedBody, rest: FramePose, share: number, weight: Numbers 
   for (const i of [0, 2]) root[i] += (weight[i] - now[i]) * BALANCING;
 }
 
-/** What ties the pelvis to a pinned hand or foot. */
-interface Tether {
-  upper: number;
-  position: Numbers;
-  /** Metres. */
-  length: number;
-}
-
-/** Shoulder or hip may be as far from the pin as the limb reaches easily, or as it was. */
-function tether({ joints }: PlacedBody, { joint, position }: IkGoal): Tether[] {
-  const limb = limbEndingIn(joint);
-  if (!limb) return [];
-  const { upper, middle, end } = limb;
-  const point = (at: number) => joints.slice(at * 3, at * 3 + 3);
-  const bones = distance(joints, upper, point(middle)) + distance(joints, end, point(middle));
-  return [{ upper, position, length: Math.max(bones * EASY_REACH, distance(joints, upper, point(end))) }];
-}
-
-/** Pins come first: the pelvis stays within reach of every pinned hand and foot. */
-function followPins(body: PlacedBody, tethers: readonly Tether[]): void {
-  for (let round = 0; round < 4; round++) {
-    for (const { upper, position, length } of tethers) {
-      const way = [0, 1, 2].map((i) => position[i] - body.joints[upper * 3 + i]);
-      const far = Math.hypot(...way);
-      if (far <= length) continue;
-      for (let i = 0; i < 3; i++) body.root[i] += (way[i] / far) * (far - length);
-      place(body);
-    }
-  }
-}
-
 /** Arms and legs exactly to their goals, hands and feet turned as wanted. */
 function fitAll(body: PlacedBody, goals: readonly IkGoal[]): void {
   for (const { joint, position, rotation, hold = 1 } of goals) {
@@ -246,7 +216,7 @@ function startAfresh(work: Work): void {
   const { body, goals } = work;
   for (const goal of goals) {
     const limb = limbEndingIn(goal.joint);
-    const miss = () => distance(body.joints, goal.joint, goal.position);
+    const miss = () => distanceTo(body.joints, goal.joint, goal.position);
     if (!limb || miss() < MISSED) continue;
     let best = { root: body.root.slice(), quaternions: body.quaternions.slice() };
     let least = miss();

@@ -76,7 +76,7 @@ const TABLE: Readonly<Record<string, JointLimit>> = {
   left_ankle: {
     axis: Y,
     // X: toes up is negative; Z: sole inwards is negative.
-    swing: oval([-45, 88], [-40, 28]),
+    swing: oval([-40, 88], [-40, 28]),
     twist: [-32, 30],
     source:
       'Toes up 20, pointed 50, sole in 35, out 15 (AAOS); about 40 of toes up under load (Bennell et al.); pointed feet of dancers reach 85 and more.',

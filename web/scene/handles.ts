@@ -8,7 +8,7 @@ export const ACCENT = '#ffb454';
 export class Handles {
   readonly points: Points;
   private readonly positions = new BufferAttribute(new Float32Array(JOINT_COUNT * 3), 3);
-  /** 0 idle, 1 hovered, 2 selected. */
+  /** 0 idle, 1 hovered, 2 selected; 4 more where the joint is pinned. */
   private readonly states = new BufferAttribute(new Float32Array(JOINT_COUNT), 1);
   private readonly material = new ShaderMaterial({
     transparent: true,
@@ -19,19 +19,24 @@ export class Handles {
       attribute float state;
       uniform float ratio;
       varying float vState;
+      varying float vPinned;
       varying float vSize;
       void main() {
-        vState = state;
-        vSize = (state > 1.5 ? 20.0 : state > 0.5 ? 18.0 : 12.0) * ratio;
+        vPinned = step(3.5, state);
+        vState = state - 4.0 * vPinned;
+        vSize = (vState > 1.5 ? 20.0 : vState > 0.5 ? 18.0 : 12.0 + 2.0 * vPinned) * ratio;
         gl_PointSize = vSize;
         gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
       }`,
     fragmentShader: /* glsl */ `
       uniform vec3 accent;
       varying float vState;
+      varying float vPinned;
       varying float vSize;
       void main() {
-        float r = length(gl_PointCoord - 0.5) * vSize;
+        vec2 p = abs(gl_PointCoord - 0.5);
+        // A pinned joint is a square: it shows without colour too.
+        float r = mix(length(p), max(p.x, p.y), vPinned) * vSize;
         float edge = vSize * 0.5 - 1.0;
         float disc = 1.0 - smoothstep(edge - 1.0, edge + 0.5, r);
         float core = 1.0 - smoothstep(edge * 0.62 - 0.7, edge * 0.62 + 0.7, r);
@@ -39,6 +44,10 @@ export class Handles {
         vec3 colour = mix(vec3(0.03, 0.035, 0.05), accent, core);
         float alpha = disc * (vState > 0.5 ? 1.0 : mix(0.45, 0.85, core));
         if (vState > 1.5) colour = mix(accent, vec3(1.0, 0.97, 0.9), core);
+        // and has a dark nail in its middle.
+        float nail = 1.0 - smoothstep(edge * 0.26 - 0.7, edge * 0.26 + 0.7, length(p) * vSize);
+        colour = mix(colour, vec3(0.03, 0.035, 0.05), nail * vPinned);
+        alpha = max(alpha, vPinned * disc * core);
         gl_FragColor = vec4(colour, alpha);
         #include <colorspace_fragment>
       }`,
@@ -65,10 +74,10 @@ export class Handles {
     this.positions.needsUpdate = true;
   }
 
-  /** Marks the hovered and the selected joint. */
-  mark(hovered: number | null, selected: number | null): void {
+  /** Marks the hovered, the selected and the pinned joints. */
+  mark(hovered: number | null, selected: number | null, pins: ReadonlySet<number>): void {
     for (let joint = 0; joint < JOINT_COUNT; joint++)
-      this.states.setX(joint, joint === selected ? 2 : joint === hovered ? 1 : 0);
+      this.states.setX(joint, (joint === selected ? 2 : joint === hovered ? 1 : 0) + (pins.has(joint) ? 4 : 0));
     this.states.needsUpdate = true;
   }
 

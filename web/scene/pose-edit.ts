@@ -68,6 +68,13 @@ export class PoseEdit {
     this.tell('change');
   }
 
+  /** Sets every joint's local rotation, 24 x 4. */
+  setAll(quaternions: Numbers): void {
+    this.start();
+    this.quaternions.set(Array.from(quaternions));
+    this.tell('change');
+  }
+
   /** Turns one joint about one of its own axes. */
   rotate(joint: number, axis: 'x' | 'y' | 'z', radians: number): void {
     this.start();

@@ -1,10 +1,17 @@
-import { Group, MathUtils, Object3D, Raycaster, Vector2, Vector3, type Camera, type Scene } from 'three';
-import { TransformControls } from 'three/addons/controls/TransformControls.js';
-import { PARENTS } from '../core/skeleton';
-import { pickBody, standingRoot } from './body-points';
+import { Plane, Raycaster, Vector2, Vector3, type Camera, type Scene } from 'three';
+import { createIkSolver, type IkSolver } from '../core/ik';
+import { clampRotation, limitExcess } from '../core/joint-limits';
+import { MIRROR, PARENTS } from '../core/skeleton';
+import type { PoseTools } from '../core/types';
+import { BalanceOverlay } from './balance-overlay';
+import { pickBody } from './body-points';
 import type { Figure } from './figure';
-import { ACCENT, Handles } from './handles';
-import { jointLabel, PoseEdit } from './pose-edit';
+import { Footing } from './footing';
+import { Gizmo } from './gizmo';
+import { Handles } from './handles';
+import { IkDrag } from './ik-drag';
+import { jointLabel, PoseEdit, rotateLocal } from './pose-edit';
+import { PosePointer } from './posing-pointer';
 
 /** What the pointer is over: for a label beside it. */
 export interface JointHover {
@@ -26,37 +33,62 @@ export interface PosingHost {
   changed: () => void;
   /** Orbiting on or off. */
   orbit: (on: boolean) => void;
+  /** No animations. */
+  calm: boolean;
 }
 
-/** Keyboard turns within this time are one change, so that holding a key is one step to undo. Milliseconds. */
+/** Keyboard changes within this time are one change, so that holding a key is one step to undo. Milliseconds. */
 const NUDGE_PAUSE = 450;
-/** How far a pointer may move and still click, CSS pixels. */
-const CLICK_SLACK = 6;
+/** What a joint's dot reaches, CSS pixels. */
+const REACH = { mouse: 12, touch: 22 };
+/** Step of a drag while Shift is held, metres. */
+const STEP = 0.05;
+const UPRIGHT = [0, 0, 0, 1];
 
-/** Pose mode: select a joint by its dot or its limb, turn it with a gizmo (forward kinematics). */
+/**
+ * Pose mode: select a joint by its dot or its limb; turn it with a gizmo (forward kinematics), or move it, by arrows or by its dot, with
+ * the body following (inverse kinematics).
+ */
 export class Posing {
   readonly edit = new PoseEdit();
   readonly selectListeners = new Set<(joint: number | null) => void>();
   readonly hoverListeners = new Set<(hover: JointHover | null) => void>();
   readonly handles = new Handles();
+  private readonly balance = new BalanceOverlay();
+  private readonly footing: Footing;
   /** Made when pose mode is first entered: most visitors watch before they pose. */
-  private gizmo: TransformControls | null = null;
-  /** Stands for the joint's parent and the joint; the gizmo turns the inner one. */
-  private readonly frame = new Group();
-  private readonly proxy = new Object3D();
+  private gizmo: Gizmo | null = null;
+  private pointer: PosePointer | null = null;
+  private solver: IkSolver | null = null;
+  private tools: PoseTools = {
+    mode: 'rotate',
+    space: 'local',
+    limits: true,
+    mirror: false,
+    pins: new Set(),
+    balance: false,
+  };
   private readonly abort = new AbortController();
   private readonly ray = new Raycaster();
   private active = false;
   private selected: number | null = null;
   private hovered: number | null = null;
-  private pressed: { x: number; y: number; id: number } | null = null;
+  private snapping = false;
   private nudgeTimer: ReturnType<typeof setTimeout> | undefined;
+  /** The drag by inverse kinematics under way and where its joint is wanted. */
+  private drag: { ik: IkDrag; target: number[]; keys: boolean } | null = null;
+  /** A dot that is held: the plane it moves in, and where the pointer was. */
+  private held: { plane: Plane; from: Vector3 } | null = null;
+  /** Degrees that a joint being turned was outside its limits before, and its other side. */
+  private slack = [0, 0];
 
   constructor(private readonly host: PosingHost) {
-    this.frame.add(this.proxy);
-    this.frame.visible = false;
-    host.scene.add(this.frame, this.handles.points);
-    this.listen();
+    this.footing = new Footing(host.calm);
+    host.scene.add(this.handles.points, this.balance.group);
+    const key = (event: KeyboardEvent) => this.onKey(event);
+    // Captured, so that Esc takes a drag back before any other shortcut hears it.
+    for (const type of ['keydown', 'keyup'] as const)
+      window.addEventListener(type, key, { signal: this.abort.signal, capture: true });
   }
 
   /** Enters or leaves pose mode. */
@@ -68,17 +100,36 @@ export class Posing {
       this.hover(null);
     }
     this.active = active;
-    if (active) this.gizmo ??= this.createGizmo();
+    if (active) {
+      this.footing.reset();
+      this.prepare();
+    }
     this.handles.points.visible = active;
+    this.balance.group.visible = active && this.tools.balance;
     if (active) this.refresh();
     this.host.changed();
   }
 
+  /** How the editor works from now on. */
+  setTools(tools: PoseTools): void {
+    if (tools.mode !== this.tools.mode) {
+      this.cancelDrag();
+      this.flush();
+    }
+    this.tools = tools;
+    if (this.gizmo) this.equip(this.gizmo);
+    this.balance.group.visible = this.active && tools.balance;
+    this.refresh();
+  }
+
   /** Shows a pose to edit, 24 x 3 axis-angle; the selection stays. A drag under way ends without a trace. */
   load(rotations: ArrayLike<number>): void {
-    this.endDrag();
+    this.letGo();
     this.flush();
+    const before = this.edit.quaternions.slice();
     this.edit.load(rotations);
+    // Another pose stands in the middle of the stage; the same one stays where its feet are.
+    if (this.edit.quaternions.some((value, i) => Math.abs(value - before[i]) > 1e-5)) this.footing.reset();
     if (this.active) this.refresh();
   }
 
@@ -87,23 +138,41 @@ export class Posing {
     if (joint === this.selected) return;
     this.flush();
     this.selected = joint;
-    if (this.gizmo) {
-      if (joint === null) this.gizmo.detach();
-      else this.gizmo.attach(this.proxy);
-      this.gizmo.enabled = joint !== null;
-      this.gizmo.getHelper().visible = joint !== null;
-    }
+    this.gizmo?.show(joint !== null);
     this.refresh();
     for (const listener of this.selectListeners) listener(joint);
   }
 
   /** Turns the selected joint about one of its own axes; quick repeats are one change. */
   nudge(axis: 'x' | 'y' | 'z', radians: number): void {
-    if (!this.active || this.selected === null || this.dragging) return;
-    this.edit.rotate(this.selected, axis, radians);
-    this.refresh();
-    clearTimeout(this.nudgeTimer);
-    this.nudgeTimer = setTimeout(() => this.flush(), NUDGE_PAUSE);
+    const joint = this.selected;
+    if (!this.active || joint === null || this.dragging) return;
+    if (this.drag) this.flush();
+    if (!this.edit.open) this.beginTurn(joint);
+    const q = this.edit.quaternions.slice();
+    rotateLocal(q, joint, axis, radians);
+    this.turn(joint, q.subarray(joint * 4, joint * 4 + 4));
+    this.expire();
+  }
+
+  /** Moves the selected joint, metres in the world, with the body following; quick repeats are one change. */
+  move(x: number, y: number, z: number): void {
+    const joint = this.selected;
+    if (!this.active || joint === null || this.dragging) return;
+    if (!this.drag) this.beginMove(joint, true);
+    if (!this.drag) return;
+    const { target } = this.drag;
+    this.moveTo([target[0] + x, target[1] + y, target[2] + z]);
+    this.expire();
+  }
+
+  /** Time goes by; true while something moves by itself. */
+  update(seconds: number): boolean {
+    if (!this.active) return false;
+    const moving = this.drag !== null && !this.drag.ik.settled;
+    if (this.drag && moving) this.moveTo(this.drag.target);
+    else if (this.footing.update(seconds)) this.refresh();
+    return moving || this.footing.settling;
   }
 
   /** Draws the edited pose: figure on the floor, dots and gizmo on its joints. */
@@ -111,17 +180,17 @@ export class Posing {
     const figure = this.host.figure();
     if (!figure || !this.active) return;
     const { quaternions } = this.edit;
-    figure.show({ root: standingRoot(quaternions), quaternions });
-    this.handles.place(figure.pose.joints);
-    this.handles.mark(this.hovered, this.selected);
-    if (this.selected !== null) {
-      const { joints, rotations } = figure.pose;
-      const parent = PARENTS[this.selected];
-      this.frame.position.fromArray(joints, this.selected * 3);
-      if (parent < 0) this.frame.quaternion.identity();
-      else this.frame.quaternion.fromArray(rotations, parent * 4);
-      this.proxy.quaternion.fromArray(quaternions, this.selected * 4);
-      this.frame.updateMatrixWorld(true);
+    figure.show({ root: this.root(), quaternions });
+    const { joints, rotations } = figure.pose;
+    this.handles.place(joints);
+    this.handles.mark(this.hovered, this.selected, this.tools.pins);
+    if (this.tools.balance) this.balance.update(joints);
+    const joint = this.selected;
+    if (joint !== null && this.gizmo) {
+      const part = (values: ArrayLike<number>, at: number) => [0, 1, 2, 3].map((i) => values[at * 4 + i]);
+      const parent = PARENTS[joint] < 0 ? UPRIGHT : part(rotations, PARENTS[joint]);
+      const position = joints.subarray(joint * 3, joint * 3 + 3);
+      this.gizmo.place(position, parent, part(quaternions, joint), part(rotations, joint));
     }
     this.host.changed();
   }
@@ -130,100 +199,173 @@ export class Posing {
   dispose(): void {
     clearTimeout(this.nudgeTimer);
     this.abort.abort();
-    this.gizmo?.detach();
     this.gizmo?.dispose();
+    this.balance.dispose();
     this.handles.dispose();
   }
 
-  private createGizmo(): TransformControls {
-    const gizmo = new TransformControls(this.host.camera, this.host.element);
-    gizmo.setMode('rotate');
-    gizmo.setSpace('local');
-    gizmo.setSize(0.62);
-    gizmo.setColors('#ff7a70', '#7fd18b', '#6aa8ff', ACCENT);
-    gizmo.showXYZE = false;
-    gizmo.enabled = false;
-    gizmo.getHelper().visible = false;
-    this.host.scene.add(gizmo.getHelper());
-    gizmo.addEventListener('change', this.host.changed);
-    gizmo.addEventListener('mouseDown', () => {
-      clearTimeout(this.nudgeTimer);
-      this.edit.commit();
-      this.edit.start();
+  private root(): ArrayLike<number> {
+    return this.drag ? this.drag.ik.pose.root : this.footing.root(this.edit.quaternions);
+  }
+
+  private prepare(): void {
+    if (this.gizmo) return;
+    const { camera, element, scene, orbit } = this.host;
+    this.gizmo = new Gizmo(camera, element, scene, {
+      start: () => {
+        if (this.selected === null) return;
+        this.flush();
+        if (this.tools.mode === 'move') this.beginMove(this.selected, false);
+        else this.beginTurn(this.selected);
+      },
+      turned: (q) => this.selected !== null && this.edit.open && this.turn(this.selected, q),
+      moved: (position) => this.drag && this.moveTo(position),
+      end: () => this.finish(),
+      changed: this.host.changed,
+      busy: (on) => orbit(!on),
     });
-    gizmo.addEventListener('objectChange', () => {
-      if (this.selected === null || !this.edit.open) return;
-      this.edit.setJoint(this.selected, this.proxy.quaternion.toArray());
-      this.refresh();
-    });
-    gizmo.addEventListener('mouseUp', () => this.edit.commit());
-    gizmo.addEventListener('dragging-changed', ({ value }) => this.host.orbit(!value));
-    return gizmo;
+    this.equip(this.gizmo);
+    // After the gizmo, which has the first word on a press.
+    const posing = this; // eslint-disable-line @typescript-eslint/no-this-alias -- the getters below are not ours
+    this.pointer = new PosePointer(
+      element,
+      {
+        get active() {
+          return posing.active;
+        },
+        get taken() {
+          return posing.dragging;
+        },
+        grabbable: (event) => (this.tools.mode === 'move' && !this.gizmo?.hovered ? this.dotAt(event) : null),
+        hover: (event) => this.hover(event && !this.gizmo?.hovered ? this.at(event) : null),
+        click: (event) => this.select(this.at(event)),
+        grab: (joint, event) => this.grab(joint, event),
+        drag: (event) => this.dragHeld(event),
+        drop: () => this.finish(),
+        cancel: () => this.cancelDrag(),
+        orbit,
+      },
+      this.abort.signal,
+    );
+  }
+
+  private equip(gizmo: Gizmo): void {
+    gizmo.mode = this.tools.mode;
+    gizmo.space = this.tools.space;
+    gizmo.snapping = this.snapping;
   }
 
   private get dragging(): boolean {
     return this.gizmo?.dragging ?? false;
   }
 
-  private listen(): void {
-    const { element } = this.host;
-    const { signal } = this.abort;
-    element.addEventListener('pointermove', (event) => this.onMove(event), { signal });
-    element.addEventListener('pointerleave', () => this.hover(null), { signal });
-    element.addEventListener(
-      'pointerdown',
-      (event) => {
-        this.pressed =
-          event.isPrimary && event.button === 0 ? { x: event.clientX, y: event.clientY, id: event.pointerId } : null;
-        if (this.dragging) this.pressed = null;
-      },
-      { signal },
-    );
-    element.addEventListener('pointerup', (event) => this.onUp(event), { signal });
-    element.addEventListener('pointercancel', () => this.cancelDrag(), { signal });
-    const key = (event: KeyboardEvent) => {
-      this.gizmo?.setRotationSnap(event.shiftKey ? MathUtils.degToRad(15) : null);
-      if (event.type === 'keydown' && event.key === 'Escape' && this.edit.open) {
-        event.stopPropagation();
-        this.cancelDrag();
-      }
-    };
-    // Captured, so that Esc takes a drag back before any other shortcut hears it.
-    for (const type of ['keydown', 'keyup'] as const) window.addEventListener(type, key, { signal, capture: true });
+  private onKey(event: KeyboardEvent): void {
+    this.snapping = event.shiftKey;
+    if (this.gizmo) this.gizmo.snapping = event.shiftKey;
+    if (event.type === 'keydown' && event.key === 'Escape' && this.edit.open) {
+      event.stopPropagation();
+      this.cancelDrag();
+    }
   }
 
-  private onMove(event: PointerEvent): void {
-    if (!this.active || this.dragging || event.buttons !== 0) return;
-    this.hover(this.gizmo?.axis ? null : this.at(event));
+  private quaternion(joint: number): Float32Array {
+    return this.edit.quaternions.subarray(joint * 4, joint * 4 + 4);
   }
 
-  private onUp(event: PointerEvent): void {
-    const { pressed } = this;
-    this.pressed = null;
-    if (!this.active || !pressed || pressed.id !== event.pointerId || this.dragging) return;
-    if (Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > CLICK_SLACK) return;
-    this.select(this.at(event));
+  private beginTurn(joint: number): void {
+    this.edit.start();
+    this.slack = [joint, MIRROR[joint]].map((each) => limitExcess(each, this.quaternion(each)));
+  }
+
+  /** Gives a joint a rotation, inside the limits where they are on, and the other side its mirror image. */
+  private turn(joint: number, q: ArrayLike<number>): void {
+    const next = this.edit.quaternions.slice();
+    const set = (each: number, value: ArrayLike<number>, slack: number) =>
+      next.set(this.tools.limits ? clampRotation(each, value, undefined, slack) : value, each * 4);
+    set(joint, q, this.slack[0]);
+    const [x, y, z, w] = next.subarray(joint * 4, joint * 4 + 4);
+    const other = MIRROR[joint];
+    if (this.tools.mirror && other !== joint) set(other, [x, -y, -z, w], Math.max(...this.slack));
+    this.edit.setAll(next);
+    this.refresh();
+  }
+
+  private beginMove(joint: number, keys: boolean): void {
+    if (!this.host.figure()) return;
+    const root = this.root();
+    this.edit.start();
+    this.solver ??= createIkSolver();
+    const ik = new IkDrag(this.solver, { root, quaternions: this.edit.quaternions }, joint, this.tools);
+    this.drag = { ik, target: ik.from.slice(), keys };
+  }
+
+  private moveTo(target: ArrayLike<number>): void {
+    if (!this.drag) return;
+    this.drag.target = Array.from(target);
+    this.edit.setAll(this.drag.ik.to(target).quaternions);
+    this.refresh();
+  }
+
+  /** Keeps the change that is under way. */
+  private finish(): void {
+    const { drag } = this;
+    this.held = null;
+    this.drag = null;
+    if (drag) this.footing.settle(drag.ik.pose.root);
+    this.edit.commit();
+    this.refresh();
+  }
+
+  private grab(joint: number, event: PointerEvent): void {
+    this.select(joint);
+    this.flush();
+    this.beginMove(joint, false);
+    if (!this.drag) return;
+    const from = new Vector3(...this.drag.ik.from);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(this.host.camera.getWorldDirection(new Vector3()), from);
+    this.held = { plane, from: this.aim(event).intersectPlane(plane, new Vector3()) ?? from };
+    this.hover(null);
+    this.host.element.style.cursor = 'grabbing';
+  }
+
+  private dragHeld(event: PointerEvent): void {
+    if (!this.held || !this.drag) return;
+    const point = this.aim(event).intersectPlane(this.held.plane, new Vector3());
+    if (!point) return;
+    const { from } = this.drag.ik;
+    const way = point.sub(this.held.from).toArray();
+    this.moveTo(way.map((c, i) => from[i] + (event.shiftKey ? Math.round(c / STEP) * STEP : c)));
+  }
+
+  /** The ray from the eye through the pointer. */
+  private aim(event: PointerEvent) {
+    const box = this.host.element.getBoundingClientRect();
+    const [x, y] = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+    this.ray.setFromCamera(new Vector2(x * 2 - 1, 1 - y * 2), this.host.camera);
+    return this.ray.ray;
+  }
+
+  private dotAt(event: PointerEvent): number | null {
+    const { left, top, width, height } = this.host.element.getBoundingClientRect();
+    const reach = event.pointerType === 'mouse' ? REACH.mouse : REACH.touch;
+    return this.handles.nearest(event.clientX - left, event.clientY - top, reach, this.host.camera, width, height);
   }
 
   /** Joint under the pointer: a dot within reach, else the limb that is hit. */
   private at(event: PointerEvent): number | null {
     const figure = this.host.figure();
     if (!figure) return null;
-    const box = this.host.element.getBoundingClientRect();
-    const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-    const reach = event.pointerType === 'mouse' ? 12 : 20;
-    const dot = this.handles.nearest(x, y, reach, this.host.camera, box.width, box.height);
+    const dot = this.dotAt(event);
     if (dot !== null) return dot;
-    this.ray.setFromCamera(new Vector2((x / box.width) * 2 - 1, 1 - (y / box.height) * 2), this.host.camera);
-    const { origin, direction } = this.ray.ray;
+    const { origin, direction } = this.aim(event);
     return pickBody(origin.toArray(), direction.toArray(), figure.pose.joints, figure.pose.rotations);
   }
 
   private hover(joint: number | null): void {
     if (joint === this.hovered) return;
     this.hovered = joint;
-    this.handles.mark(joint, this.selected);
-    this.host.element.style.cursor = joint === null ? '' : 'pointer';
+    this.handles.mark(joint, this.selected, this.tools.pins);
+    this.host.element.style.cursor = joint === null ? '' : this.tools.mode === 'move' ? 'grab' : 'pointer';
     this.host.changed();
     const hover = joint === null ? null : this.labelAt(joint);
     for (const listener of this.hoverListeners) listener(hover);
@@ -237,24 +379,35 @@ export class Posing {
     return { joint, label: jointLabel(joint), x: ((v.x + 1) / 2) * width, y: ((1 - v.y) / 2) * height };
   }
 
+  /** A keyboard change is kept when nothing more comes for a while. */
+  private expire(): void {
+    clearTimeout(this.nudgeTimer);
+    this.nudgeTimer = setTimeout(() => this.flush(), NUDGE_PAUSE);
+  }
+
   /** Keeps a keyboard change that is still open. */
   private flush(): void {
     clearTimeout(this.nudgeTimer);
     this.nudgeTimer = undefined;
-    if (!this.dragging) this.edit.commit();
+    if (this.dragging || this.held) return;
+    if (this.drag) this.finish();
+    else this.edit.commit();
   }
 
   private cancelDrag(): void {
     clearTimeout(this.nudgeTimer);
-    this.endDrag();
+    this.letGo();
     if (!this.edit.open) return;
     this.edit.cancel();
     this.refresh();
   }
 
-  private endDrag(): void {
-    if (!this.gizmo?.dragging) return;
-    this.gizmo.dragging = false;
-    this.gizmo.axis = null;
+  private letGo(): void {
+    this.drag = null;
+    this.held = null;
+    this.pointer?.release();
+    if (!this.dragging) return;
+    this.gizmo!.release();
+    this.host.orbit(true);
   }
 }

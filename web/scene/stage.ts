@@ -1,7 +1,7 @@
 /** The stage: the figure, its floor, lights and camera, and the loop that draws them. */
 import { NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three';
 import type { CameraView } from '../core/document';
-import type { FramePose } from '../core/types';
+import type { FramePose, PoseTools } from '../core/types';
 import { JOINT_COUNT } from '../core/skeleton';
 import { Figure } from './figure';
 import { loadFigure, type FigureAsset } from './figure-asset';
@@ -42,6 +42,10 @@ export interface Stage {
   onHover(listener: (hover: JointHover | null) => void): () => void;
   /** Turns the selected joint about one of its own axes; quick repeats make one change. */
   rotateSelected(axis: 'x' | 'y' | 'z', radians: number): void;
+  /** Moves the selected joint, metres in the world, the body following; quick repeats make one change. */
+  moveSelected(dx: number, dy: number, dz: number): void;
+  /** How the gizmo and the dots work: turning or moving, limits, mirroring, pins, the balance hint. */
+  setPoseTools(tools: PoseTools): void;
   /** Shows neighbouring key poses as ghosts, at most one of a kind, or none. */
   setGhosts(ghosts: readonly Ghost[] | null): void;
   /** Shows the path of a joint, or none. The picture is copied. */
@@ -120,6 +124,7 @@ class WebGLStage implements Stage {
       figure: () => this.figure,
       changed: () => (this.dirty = true),
       orbit: (on) => (this.view.controls.enabled = on),
+      calm: this.calm,
     });
     this.bodyClicks = new BodyClicks(this.canvas, this.view.camera, () => (this.mode === 'dance' ? this.figure : null));
     this.scene.add(this.backdrop, this.floor.mesh, this.lights.group, this.onion.group, this.path.group);
@@ -185,6 +190,14 @@ class WebGLStage implements Stage {
 
   rotateSelected(axis: 'x' | 'y' | 'z', radians: number): void {
     this.posing.nudge(axis, radians);
+  }
+
+  moveSelected(dx: number, dy: number, dz: number): void {
+    this.posing.move(dx, dy, dz);
+  }
+
+  setPoseTools(tools: PoseTools): void {
+    this.posing.setTools(tools);
   }
 
   setGhosts(ghosts: readonly Ghost[] | null): void {
@@ -310,6 +323,7 @@ class WebGLStage implements Stage {
     for (const callback of this.callbacks) callback(now);
     const seconds = Math.min(Math.max(elapsed, 0), 100) / 1000;
     if (this.view.update(seconds)) this.dirty = true;
+    if (this.posing.update(seconds)) this.dirty = true;
     if (this.glow > 0) {
       this.glow = this.glow < 0.01 ? 0 : this.glow * Math.exp(-seconds * 4.5);
       this.floor.glow = this.glow;
