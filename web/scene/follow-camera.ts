@@ -21,6 +21,7 @@ export class FollowCamera {
   private readonly springs = [new Spring(0, 0.55), new Spring(0, 0.55)];
   private readonly goal = [0, 0];
   private touched = false;
+  private moved = false;
   /** Told when the camera rests where the user turned it to, or is back at the opening view. */
   settled: () => void = () => undefined;
   private settling: ReturnType<typeof setTimeout> | undefined;
@@ -46,6 +47,8 @@ export class FollowCamera {
       this.gliding = null;
     });
     this.controls.addEventListener('end', () => this.settle(() => before));
+    // Without damping the controls move the camera in the event itself, and the next update finds nothing left to do.
+    this.controls.addEventListener('change', () => (this.moved = true));
     this.jump();
   }
 
@@ -142,7 +145,10 @@ export class FollowCamera {
       if (glide.progress === 1) this.gliding = null;
       moved = true;
     }
-    return this.controls.update(seconds) || moved;
+    this.controls.update(seconds);
+    moved ||= this.moved;
+    this.moved = false;
+    return moved;
   }
 
   private settle(before: () => { position: Vector3; target: Vector3 } | null): void {
