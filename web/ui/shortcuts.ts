@@ -1,5 +1,6 @@
 /** One table of keys: it feeds the bindings, the tooltips and the help overlay. */
 import type { Store } from '../app/store';
+import { chooseProject } from './files';
 
 /** One action and its keys. */
 export interface Shortcut {
@@ -265,6 +266,22 @@ export const SHORTCUTS: readonly Shortcut[] = [
   { id: 'undo', keys: ['Mod+Z'], label: 'Undo', group: 'Project', run: (store) => store.undo() },
   { id: 'redo', keys: ['Mod+Shift+Z', 'Mod+Y'], label: 'Redo', group: 'Project', run: (store) => store.redo() },
   {
+    id: 'save',
+    keys: ['Mod+S'],
+    label: 'Save the project with its song',
+    group: 'Project',
+    everywhere: true,
+    run: (store) => void store.saveProject(true),
+  },
+  {
+    id: 'open',
+    keys: ['Mod+O'],
+    label: 'Open a project',
+    group: 'Project',
+    everywhere: true,
+    run: (store) => chooseProject(store),
+  },
+  {
     id: 'generate',
     keys: ['G'],
     label: 'Generate the dance',
@@ -339,6 +356,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
     run: (store) => store.togglePath(),
   },
   { id: 'help', keys: ['?'], label: 'Show the keys', group: 'View', run: (store) => store.toggleHelp() },
+  { id: 'tour', keys: ['H'], label: 'Show the first steps', group: 'View', run: (store) => store.startTour() },
   {
     id: 'escape',
     keys: ['Escape'],
@@ -350,7 +368,8 @@ export const SHORTCUTS: readonly Shortcut[] = [
       else if (store.state.help.value) store.toggleHelp(false);
       else if (store.cancelBlend()) return;
       else if (store.state.draft.value) store.closeDraft();
-      else store.selectKey(null);
+      else if (store.state.selection.value.size > 0) store.selectKey(null);
+      else store.endTour();
     },
   },
 ];
