@@ -158,7 +158,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...playback,
     ...pose,
     ...library,
-    ...poseImportActions(context, library, { addKey: keys.addKey, editPose: pose.editPose }),
+    ...poseImportActions(context, library, keys, pose),
     ...songs,
     ...project,
     ...demo,

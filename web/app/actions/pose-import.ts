@@ -4,13 +4,15 @@ import { breathe, messageOf, type Context } from '../context';
 import { isPoseList, readPoseClips } from '../pose-reader';
 import type { LibraryActions } from './library';
 
-interface Others {
+interface Keys {
   addKey(rotations: readonly number[], time: number, options?: { name?: string; exact?: boolean }): string;
+}
+interface Editor {
   editPose(rotations: readonly number[], options?: { name?: string }): void;
 }
 
 /** Actions on the file that a pose is taken from. */
-export function poseImportActions(context: Context, library: LibraryActions, others: Others) {
+export function poseImportActions(context: Context, library: LibraryActions, keys: Keys, editor: Editor) {
   const { state, services } = context;
   let reading = 0;
 
@@ -73,7 +75,7 @@ export function poseImportActions(context: Context, library: LibraryActions, oth
     /** Opens the editor with the chosen frame; the file stays open behind it. */
     editFrame(): void {
       const pose = chosen();
-      if (pose) others.editPose(pose.rotations, { name: pose.name });
+      if (pose) editor.editPose(pose.rotations, { name: pose.name });
     },
 
     /** Puts the chosen frame on the timeline, at the playhead's nearest beat. */
@@ -84,7 +86,7 @@ export function poseImportActions(context: Context, library: LibraryActions, oth
         context.notify('info', 'Drop a song first: poses are placed on its beats.');
         return;
       }
-      others.addKey(pose.rotations, services.player.time(), { name: pose.name });
+      keys.addKey(pose.rotations, services.player.time(), { name: pose.name });
     },
 
     /** Saves the chosen frame to the library. */
