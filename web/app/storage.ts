@@ -34,6 +34,8 @@ export function isFull(error: unknown): boolean {
  */
 export function createStorage(name = 'posebeat', mayWrite: () => boolean = () => true): Storage {
   let opening: Promise<IDBPDatabase<Schema>> | null = null;
+  /** The database once it is open: a page that goes away cannot wait for it. */
+  let ready: IDBPDatabase<Schema> | null = null;
   const files = songFiles(`${name}-songs`);
   const database = () => {
     opening ??= openDB<Schema>(name, 1, {
@@ -42,11 +44,22 @@ export function createStorage(name = 'posebeat', mayWrite: () => boolean = () =>
         db.createObjectStore('songs', { keyPath: 'hash' });
       },
       // The browser may close it (deleted site data, a full disk): the next call opens it anew.
-      terminated: () => (opening = null),
+      terminated: () => (opening = ready = null),
     });
-    opening.catch(() => (opening = null));
+    opening.then(
+      (db) => (ready = db),
+      () => (opening = null),
+    );
     return opening;
   };
+
+  /** Commits at once: a transaction that waits to commit by itself is undone when its page goes away. */
+  async function putWork(key: 'document' | 'dance', value: unknown): Promise<void> {
+    const transaction = (ready ?? (await database())).transaction('work', 'readwrite');
+    const put = transaction.store.put(value, key);
+    transaction.commit();
+    await Promise.all([put, transaction.done]);
+  }
 
   /** Lets go of all songs but the `keep` most recently used. */
   async function forgetSongs(db: IDBPDatabase<Schema>, keep: number): Promise<void> {
@@ -68,10 +81,10 @@ export function createStorage(name = 'posebeat', mayWrite: () => boolean = () =>
 
   return {
     async saveDocument(document: ProjectDocument) {
-      if (mayWrite()) await (await database()).put('work', document, 'document');
+      if (mayWrite()) await putWork('document', document);
     },
     async saveDance(dance: SavedDance) {
-      if (mayWrite()) await (await database()).put('work', dance, 'dance');
+      if (mayWrite()) await putWork('dance', dance);
     },
     async saveSong(hash, song) {
       const db = await database();

@@ -29,6 +29,7 @@ export function TopBar() {
         type="button"
         class="tool labelled new-song"
         onClick={() => chooseFile(store)}
+        aria-label="New song"
         title="Choose another song, or drop one anywhere"
       >
         <Icon name="music" />

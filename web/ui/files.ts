@@ -22,8 +22,13 @@ export function chooseFile(
   const input = document.createElement('input');
   input.type = 'file';
   input.accept = accept;
+  input.hidden = true;
+  // An input outside of the page may be swept away while the chooser is open: its answer would be lost.
+  document.body.append(input);
+  input.addEventListener('cancel', () => input.remove());
   input.addEventListener('change', () => {
     const file = input.files?.[0];
+    input.remove();
     if (file) open(store, file);
   });
   input.click();
