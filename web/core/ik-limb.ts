@@ -160,8 +160,9 @@ export function fitLimb(body: PlacedBody, { upper, middle, end, hinge }: Limb, t
 /**
  * Swings the elbow or knee about the line from shoulder to wrist (hip to ankle) towards a point, as far as the limits let it; the
  * end of the limb stays where it is and keeps its rotation.
+ * @param part how much of the way
  */
-export function swivelLimb(body: PlacedBody, { upper, middle, end }: Limb, target: Numbers): void {
+export function swivelLimb(body: PlacedBody, { upper, middle, end }: Limb, target: Numbers, part = 1): void {
   const a = at(body.joints, upper);
   const line = minus(at(body.joints, end), a);
   const length2 = dot(line, line);
@@ -177,7 +178,7 @@ export function swivelLimb(body: PlacedBody, { upper, middle, end }: Limb, targe
   const to = across([target[0], target[1], target[2]]);
   if (norm(from) < 1e-4 || norm(to) < 1e-4) return;
   const length = Math.sqrt(length2);
-  const angle = Math.atan2(dot(cross(from, to), line) / length, dot(from, to));
+  const angle = part * Math.atan2(dot(cross(from, to), line) / length, dot(from, to));
   const axis = line.map((c) => c / length);
 
   const start = body.quaternions.slice();

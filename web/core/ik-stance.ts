@@ -1,7 +1,7 @@
 /** How the body stands on its pins: within reach of them, feet flat, weight over them. */
 import { centreOfMass } from './balance';
 import type { IkGoal } from './ik';
-import { limbEndingIn, place, turnInWorld, type PlacedBody } from './ik-limb';
+import { limbEndingIn, place, swivelLimb, turnInWorld, type PlacedBody } from './ik-limb';
 import { axisAngleToQuaternion, conjugate, multiply, quaternionToAxisAngle, type Numbers } from './rotation';
 import { spec } from './spec';
 
@@ -105,4 +105,21 @@ export function giveWay(body: PlacedBody, feet: readonly Stance[], weight: Numbe
   const lateral = [facing[2] / length, 0, -facing[0] / length];
   turnInWorld(body, 0, axisAngleToQuaternion(lateral.map((c) => -c * beyond * COUNTERWEIGHT)));
   return false;
+}
+
+/** A knee that bends this much more than before begins to follow its toes, radians. */
+const SQUATTING = 0.3;
+
+/**
+ * Lets the knees of a squat go out over the toes, a little in each solve.
+ * @param before local rotations before the drag, 24 x 4
+ */
+export function kneesOverToes(body: PlacedBody, feet: readonly Stance[], before: Numbers): void {
+  for (const { ankle, facing } of feet) {
+    const limb = limbEndingIn(ankle)!;
+    const bend = (q: Numbers) => 2 * Math.acos(Math.min(Math.abs(q[limb.middle * 4 + 3]), 1));
+    if (bend(body.quaternions) < bend(before) + SQUATTING) continue;
+    const toes = facing.map((c, i) => body.joints[ankle * 3 + i] + c);
+    swivelLimb(body, limb, toes, 0.15);
+  }
 }

@@ -16,7 +16,16 @@ import {
   swivelLimb,
   type PlacedBody,
 } from './ik-limb';
-import { distanceTo, followPins, giveWay, stanceOf, tether, type Stance, type Tether } from './ik-stance';
+import {
+  distanceTo,
+  followPins,
+  giveWay,
+  kneesOverToes,
+  stanceOf,
+  tether,
+  type Stance,
+  type Tether,
+} from './ik-stance';
 import { directions, limitExcess } from './joint-limits';
 import { angleBetween, axisAngleToQuaternion, slerp, type Numbers } from './rotation';
 import { forwardKinematics, JOINT_COUNT } from './skeleton';
@@ -117,6 +126,7 @@ function solve(
     if (moveRoot) followPins(body, tethers);
     fitAll(body, pins);
   }
+  if (pelvis && rest) kneesOverToes(body, feet, rest.quaternions);
   for (const pole of poles) {
     const limb = limbBentAt(pole.joint);
     if (limb) swivelLimb(body, limb, pole.position);

@@ -1,27 +1,19 @@
-import { Plane, Raycaster, Vector2, Vector3, type Camera, type Scene } from 'three';
+import { Plane, Vector3, type Camera, type Scene } from 'three';
 import { createIkSolver, type IkSolver } from '../core/ik';
 import { clampRotation, limitExcess } from '../core/joint-limits';
 import { MIRROR, PARENTS } from '../core/skeleton';
 import type { PoseTools } from '../core/types';
 import { BalanceOverlay } from './balance-overlay';
-import { pickBody } from './body-points';
 import type { Figure } from './figure';
 import { Footing } from './footing';
 import { Gizmo } from './gizmo';
 import { Handles } from './handles';
 import { IkDrag } from './ik-drag';
-import { jointLabel, PoseEdit, rotateLocal } from './pose-edit';
+import { Picker, type JointHover } from './picker';
+import { PoseEdit, rotateLocal } from './pose-edit';
 import { PosePointer } from './posing-pointer';
 
-/** What the pointer is over: for a label beside it. */
-export interface JointHover {
-  joint: number;
-  /** Plain-English name. */
-  label: string;
-  /** CSS pixels from the stage's top left corner. */
-  x: number;
-  y: number;
-}
+export type { JointHover } from './picker';
 
 /** What posing needs from the stage. */
 export interface PosingHost {
@@ -39,8 +31,6 @@ export interface PosingHost {
 
 /** Keyboard changes within this time are one change, so that holding a key is one step to undo. Milliseconds. */
 const NUDGE_PAUSE = 450;
-/** What a joint's dot reaches, CSS pixels. */
-const REACH = { mouse: 12, touch: 22 };
 /** Step of a drag while Shift is held, metres. */
 const STEP = 0.05;
 const UPRIGHT = [0, 0, 0, 1];
@@ -69,7 +59,7 @@ export class Posing {
     balance: false,
   };
   private readonly abort = new AbortController();
-  private readonly ray = new Raycaster();
+  private readonly picker: Picker;
   private active = false;
   private selected: number | null = null;
   private hovered: number | null = null;
@@ -84,6 +74,7 @@ export class Posing {
 
   constructor(private readonly host: PosingHost) {
     this.footing = new Footing(host.calm);
+    this.picker = new Picker(host, this.handles);
     host.scene.add(this.handles.points, this.balance.group);
     const key = (event: KeyboardEvent) => this.onKey(event);
     // Captured, so that Esc takes a drag back before any other shortcut hears it.
@@ -236,9 +227,9 @@ export class Posing {
         get taken() {
           return posing.dragging;
         },
-        grabbable: (event) => (this.tools.mode === 'move' && !this.gizmo?.hovered ? this.dotAt(event) : null),
-        hover: (event) => this.hover(event && !this.gizmo?.hovered ? this.at(event) : null),
-        click: (event) => this.select(this.at(event)),
+        grabbable: (event) => (this.tools.mode === 'move' && !this.gizmo?.hovered ? this.picker.dot(event) : null),
+        hover: (event) => this.hover(event && !this.gizmo?.hovered ? this.picker.joint(event) : null),
+        click: (event) => this.select(this.picker.joint(event)),
         grab: (joint, event) => this.grab(joint, event),
         drag: (event) => this.dragHeld(event),
         drop: () => this.finish(),
@@ -323,42 +314,18 @@ export class Posing {
     if (!this.drag) return;
     const from = new Vector3(...this.drag.ik.from);
     const plane = new Plane().setFromNormalAndCoplanarPoint(this.host.camera.getWorldDirection(new Vector3()), from);
-    this.held = { plane, from: this.aim(event).intersectPlane(plane, new Vector3()) ?? from };
+    this.held = { plane, from: this.picker.aim(event).intersectPlane(plane, new Vector3()) ?? from };
     this.hover(null);
     this.host.element.style.cursor = 'grabbing';
   }
 
   private dragHeld(event: PointerEvent): void {
     if (!this.held || !this.drag) return;
-    const point = this.aim(event).intersectPlane(this.held.plane, new Vector3());
+    const point = this.picker.aim(event).intersectPlane(this.held.plane, new Vector3());
     if (!point) return;
     const { from } = this.drag.ik;
     const way = point.sub(this.held.from).toArray();
     this.moveTo(way.map((c, i) => from[i] + (event.shiftKey ? Math.round(c / STEP) * STEP : c)));
-  }
-
-  /** The ray from the eye through the pointer. */
-  private aim(event: PointerEvent) {
-    const box = this.host.element.getBoundingClientRect();
-    const [x, y] = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
-    this.ray.setFromCamera(new Vector2(x * 2 - 1, 1 - y * 2), this.host.camera);
-    return this.ray.ray;
-  }
-
-  private dotAt(event: PointerEvent): number | null {
-    const { left, top, width, height } = this.host.element.getBoundingClientRect();
-    const reach = event.pointerType === 'mouse' ? REACH.mouse : REACH.touch;
-    return this.handles.nearest(event.clientX - left, event.clientY - top, reach, this.host.camera, width, height);
-  }
-
-  /** Joint under the pointer: a dot within reach, else the limb that is hit. */
-  private at(event: PointerEvent): number | null {
-    const figure = this.host.figure();
-    if (!figure) return null;
-    const dot = this.dotAt(event);
-    if (dot !== null) return dot;
-    const { origin, direction } = this.aim(event);
-    return pickBody(origin.toArray(), direction.toArray(), figure.pose.joints, figure.pose.rotations);
   }
 
   private hover(joint: number | null): void {
@@ -367,16 +334,8 @@ export class Posing {
     this.handles.mark(joint, this.selected, this.tools.pins);
     this.host.element.style.cursor = joint === null ? '' : this.tools.mode === 'move' ? 'grab' : 'pointer';
     this.host.changed();
-    const hover = joint === null ? null : this.labelAt(joint);
+    const hover = joint === null ? null : this.picker.label(joint);
     for (const listener of this.hoverListeners) listener(hover);
-  }
-
-  private labelAt(joint: number): JointHover | null {
-    const figure = this.host.figure();
-    if (!figure) return null;
-    const v = new Vector3().fromArray(figure.pose.joints, joint * 3).project(this.host.camera);
-    const { width, height } = this.host.element.getBoundingClientRect();
-    return { joint, label: jointLabel(joint), x: ((v.x + 1) / 2) * width, y: ((1 - v.y) / 2) * height };
   }
 
   /** A keyboard change is kept when nothing more comes for a while. */
