@@ -24,12 +24,12 @@ export default defineConfig({
   projects: [
     {
       name: 'no stage',
-      testMatch: /(api|songs|generate|report|beats|layout|touch|a11y|project)\.spec\.ts/,
+      testMatch: /(api|library|songs|generate|ranges|zzf|report|beats|layout|touch|a11y|project)\.spec\.ts/,
       use: { viewport: { width: 640, height: 480 }, launchOptions: launch('--disable-3d-apis') },
     },
     {
       name: 'stage',
-      testMatch: /(page|timeline|stage)\.spec\.ts/,
+      testMatch: /(page|timeline|pose-editor|stage)\.spec\.ts/,
       use: { launchOptions: launch('--enable-unsafe-swiftshader') },
     },
     {

@@ -3,8 +3,9 @@ import { Player } from '../../web/audio/player';
 import { createStore } from '../../web/app/store';
 import { withinLimits } from '../../web/core/joint-limits';
 import { headingOfPose } from '../../web/core/pose-tools';
-import { axisAngleToQuaternion } from '../../web/core/rotation';
-import { JOINT_COUNT, jointIndex, mirrorPose } from '../../web/core/skeleton';
+import { axisAngleToQuaternion, poseToQuaternions } from '../../web/core/rotation';
+import { forwardKinematics, JOINT_COUNT, jointIndex, mirrorPose } from '../../web/core/skeleton';
+import { standingRoot } from '../../web/scene/body-points';
 import { fakeReporter, fakeServices } from './support/app';
 
 const REST = new Array<number>(72).fill(0);
@@ -157,6 +158,24 @@ describe('typed values', () => {
     store.toggleSpace();
     store.setJointDegrees(jointIndex('neck'), [0, 30, 0]);
     expect(at(jointIndex('neck'))[1]).toBeCloseTo(Math.PI / 6 - 0.3, 6);
+  });
+});
+
+describe('typed places', () => {
+  it('take a hand there, the body following, in one step, with the limits kept', async () => {
+    const { store, draft, at } = await editor();
+    const wrist = jointIndex('left_wrist');
+    const place = () => {
+      const quaternions = poseToQuaternions(draft().rotations);
+      return forwardKinematics(quaternions, standingRoot(quaternions)).slice(wrist * 3, wrist * 3 + 3);
+    };
+    await store.moveJointTo(wrist, [0.35, 1.2, 0.35]);
+    const [x, y, z] = place();
+    expect(Math.hypot(x - 0.35, y - 1.2, z - 0.35)).toBeLessThan(0.02);
+    for (let joint = 1; joint < JOINT_COUNT; joint++)
+      expect(withinLimits(joint, axisAngleToQuaternion(at(joint)))).toBe(true);
+    store.undo();
+    expect(draft().rotations).toEqual(REST);
   });
 });
 

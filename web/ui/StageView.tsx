@@ -7,7 +7,7 @@ import type { Store } from '../app/store';
 import { CompareBadge } from './CompareBadge';
 import { Icon } from './Icon';
 import { chooseFile } from './files';
-import { onStageKey, type PosingStage } from './pose/stage-keys';
+import { onStageKey } from './pose/stage-keys';
 import { ToolStrip } from './pose/ToolStrip';
 import { PoseBar } from './PoseBar';
 import { bindCamera } from './stage-camera';
@@ -265,7 +265,7 @@ async function startStage(container: HTMLElement, store: Store, onOpen: (stage: 
       }
       opened.selectJoint(draft.joint);
     }),
-    effect(() => (opened as PosingStage).setPoseTools?.(state.poseTools.value)),
+    effect(() => opened.setPoseTools(state.poseTools.value)),
     bindOverlays(opened, store),
   );
   return () => {

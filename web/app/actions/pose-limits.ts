@@ -9,15 +9,10 @@ export interface PoseMath {
   /** Nearest local rotation (x y z w) that a joint can take. */
   clampRotation: ClampJoint;
   /**
-   * The pose after a joint was taken to a place, with the body following, or null when there is nothing to solve it with.
+   * The pose after a joint was taken to a place, with the body following.
    * @param target world position, metres, of the figure standing on the floor
    */
-  reach(
-    rotations: readonly number[],
-    joint: number,
-    target: readonly number[],
-    tools: PoseTools,
-  ): Promise<number[] | null>;
+  reach(rotations: readonly number[], joint: number, target: readonly number[], tools: PoseTools): Promise<number[]>;
 }
 
 /** Words for joints that stopped at their limits; empty when none did. */

@@ -53,7 +53,7 @@ export function poseShapeActions(context: Context, desk: PoseDesk, math: PoseMat
       const before = desk.present;
       const moved = await math.reach(before, joint, target, state.poseTools.value);
       // Whatever was done while the solver was fetched stands.
-      if (!moved || desk.present !== before) return;
+      if (desk.present !== before) return;
       desk.push(moved, 'Move joint');
     },
 

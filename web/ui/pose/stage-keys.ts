@@ -1,7 +1,6 @@
 /** Posing by keyboard: with the stage focused, arrow keys turn or move the chosen joint and go through the skeleton. */
 import type { Store } from '../../app/store';
 import { JOINTS, MIRROR, PARENTS } from '../../core/skeleton';
-import type { PoseTools } from '../../core/types';
 import type { Stage } from '../../scene/stage';
 
 /** Degrees of one press, and with Shift. */
@@ -27,12 +26,6 @@ const TURNS: Readonly<Record<string, readonly ['x' | 'y' | 'z', 1 | -1]>> = {
   PageDown: ['z', -1],
 };
 
-/** A stage that poses by inverse kinematics too. */
-export type PosingStage = Stage & {
-  moveSelected?(x: number, y: number, z: number): void;
-  setPoseTools?(tools: PoseTools): void;
-};
-
 /** The joint that an arrow key goes to from another one: to its parent, its first child, or the other side. */
 export function neighbourJoint(joint: number, key: string): number {
   if (key === 'ArrowUp') return Math.max(PARENTS[joint], 0);
@@ -50,7 +43,7 @@ export function neighbourJoint(joint: number, key: string): number {
 }
 
 /** Handles a key on the focused stage. Returns whether it was one. */
-export function onStageKey(event: KeyboardEvent, stage: PosingStage, store: Store): boolean {
+export function onStageKey(event: KeyboardEvent, stage: Stage, store: Store): boolean {
   const draft = store.state.draft.value;
   if (!draft || event.altKey || !(event.key in MOVES)) return false;
   const { joint } = draft;
@@ -61,7 +54,7 @@ export function onStageKey(event: KeyboardEvent, stage: PosingStage, store: Stor
   if (store.state.poseTools.value.mode === 'move') {
     const step = event.shiftKey ? MOVE.coarse : MOVE.fine;
     const [x, y, z] = MOVES[event.key];
-    stage.moveSelected?.(x * step, y * step, z * step);
+    stage.moveSelected(x * step, y * step, z * step);
   } else {
     const [axis, sign] = TURNS[event.key];
     stage.rotateSelected(axis, (sign * (event.shiftKey ? TURN.coarse : TURN.fine) * Math.PI) / 180);
