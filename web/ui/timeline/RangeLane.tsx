@@ -99,7 +99,7 @@ function RangeChip(props: {
     <div role="listitem" class="range-item" style={{ left: `${range.start * scale + 1}px` }}>
       <button
         type="button"
-        class={`range-chip ${index < 0 ? 'whole' : ''} ${selected ? 'selected' : ''}`}
+        class={`range-chip ${index < 0 ? 'whole' : ''} ${selected ? 'in-hand' : ''}`}
         data-grab
         data-range={range.id}
         popovertarget={RANGE_MENU_ID}

@@ -67,7 +67,7 @@ export function Timeline() {
       widths: widths.value,
       sections: sections.value,
       selection: state.selection.value,
-      danced: generating ? (partial ? partial.frames / partial.fps : 0) : done,
+      danced: generating && partial ? partial.frames / partial.fps : done,
       stale: state.stale.value,
       generating,
     };
