@@ -48,6 +48,7 @@ export async function benchTimeline(origin: string, wavPath: string): Promise<Ti
 
 /** Opens the page with the song and its key poses, and waits until it has nothing else to do. */
 async function prepare(page: Page, origin: string, wavPath: string): Promise<void> {
+  page.setDefaultTimeout(600_000);
   await page.goto(origin);
   await page.evaluate(() => window.posebeat.ready);
   // The TypeScript runner names functions through a helper that the page does not have.

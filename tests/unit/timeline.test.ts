@@ -89,6 +89,8 @@ describe('shortcuts', () => {
     expect(press('g')).toEqual(['generate']);
     expect(press('g', { ctrlKey: true })).toEqual([]);
     expect(press('m', { altKey: true })).toEqual([]);
+    expect(press('0')).toEqual(['fit']);
+    expect(press(')', { shiftKey: true, code: 'Digit0' })).toEqual(['fit-selection']);
   });
   it('are unique and readable', () => {
     // The pose editor and the timeline share some keys: only one of them is open.

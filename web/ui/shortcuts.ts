@@ -318,7 +318,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
   },
   { id: 'zoom-in', keys: ['+', '='], label: 'Zoom in', group: 'View', run: (store) => store.zoom(1.5) },
   { id: 'zoom-out', keys: ['-'], label: 'Zoom out', group: 'View', run: (store) => store.zoom(1 / 1.5) },
-  { id: 'fit', keys: ['0'], label: 'Show the whole song', group: 'View', run: (store) => store.fit() },
+  // Before plain 0: some layouts type a digit with Shift.
   {
     id: 'fit-selection',
     keys: ['Shift+0'],
@@ -326,6 +326,7 @@ export const SHORTCUTS: readonly Shortcut[] = [
     group: 'View',
     run: (store) => store.showSelection(),
   },
+  { id: 'fit', keys: ['0'], label: 'Show the whole song', group: 'View', run: (store) => store.fit() },
   {
     id: 'follow',
     keys: ['Shift+F'],
