@@ -1,4 +1,5 @@
 /** Makes the dance of a document step by step: the whole, then each range on top; what was made before is taken from the cache. */
+import type { FrameRange } from '../core/excerpt';
 import type { UncorrectedDance } from '../core/finish';
 import type { Motion, SeedClip } from '../core/types';
 import type { DanceRequest } from '../workers/protocol';
@@ -19,8 +20,8 @@ export interface MakeWish {
   reuse: boolean;
   /** Called before the first step that needs the network. */
   ready(): Promise<unknown>;
-  /** The dance so far (null: what is shown may stay), the share of all steps that is done, and the windows run. */
-  onProgress(motion: Motion | null, fraction: number, windows: number): void;
+  /** The dance so far (null: what is shown may stay), the share of all steps that is done, the windows run, and the step's range. */
+  onProgress(motion: Motion | null, fraction: number, windows: number, range?: FrameRange): void;
   signal: AbortSignal;
 }
 
@@ -101,7 +102,8 @@ export function createMaker({ state, services, analysed }: Context, reporter: Re
           ...request,
         },
         (motion, fraction, count) => {
-          if (!signal.aborted) wish.onProgress(motion, (before + fraction * lengths[index]) / total, windows + count);
+          if (signal.aborted) return;
+          wish.onProgress(motion, (before + fraction * lengths[index]) / total, windows + count, request.range);
         },
         signal,
       );
@@ -131,8 +133,9 @@ export function createMaker({ state, services, analysed }: Context, reporter: Re
         motion = null;
         continue;
       }
-      if (motion) wish.onProgress(motion, lengths.slice(0, i + 1).reduce((a, b) => a + b, 0) / total, windows);
       const { from, to } = step;
+      const before = lengths.slice(0, i + 1).reduce((sum, length) => sum + length, 0);
+      wish.onProgress(motion, before / total, windows, { from, to });
       const below = uncorrected ? { previousUncorrected: uncorrected } : { previous: motion ?? undefined };
       result = await run(i + 1, { options: options(step), range: { from, to }, ...below });
       motion = result.motion;

@@ -3,7 +3,7 @@ import { computed, signal } from '@preact/signals';
 import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
 import type { PoseClips } from '../core/formats/pose-sequence';
-import type { ProjectDocument, SongReference } from '../core/document';
+import type { ProjectDocument, SongReference, TimeRange } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
 import type { Limb } from '../core/pose-tools';
 import type { TradeOffPoint } from '../core/report-curves';
@@ -82,7 +82,8 @@ export interface Comparison {
 export type Generation =
   | { status: 'idle' }
   | ({ status: 'loading' } & LoadProgress)
-  | { status: 'running'; fraction: number; windows: number };
+  /** `range` is what is being made anew; without it the whole dance is. */
+  | { status: 'running'; fraction: number; windows: number; range?: TimeRange };
 
 /** A message to the visitor. */
 export interface Notice {

@@ -4,6 +4,7 @@ import { framePose, type MutableFramePose } from '../core/motion';
 import type { Motion } from '../core/types';
 import type { JointHover, Stage } from '../scene/stage';
 import type { Store } from '../app/store';
+import { rangeName } from '../app/range-name';
 import { CompareBadge } from './CompareBadge';
 import { Icon } from './Icon';
 import { chooseFile } from './files';
@@ -175,7 +176,8 @@ function WorkChip() {
       />
     );
   }
-  return <Work text="Making the dance" fraction={made.fraction} tone="motion" onCancel={() => store.cancel()} />;
+  const what = made.range ? rangeName(store.state.grid.value, made.range) : 'the dance';
+  return <Work text={`Making ${what}`} fraction={made.fraction} tone="motion" onCancel={() => store.cancel()} />;
 }
 
 function Work(props: { text: string; fraction: number; tone: 'music' | 'motion'; onCancel: () => void }) {

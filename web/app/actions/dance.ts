@@ -135,9 +135,10 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     }
   }
 
-  const progress = (motion: Motion | null, fraction: number, windows: number) => {
+  const progress = (motion: Motion | null, fraction: number, windows: number, made?: FrameRange) => {
     if (motion) state.partial.value = motion;
-    state.generation.value = { status: 'running', fraction, windows };
+    const range = made && { start: made.from / spec.fps, end: made.to / spec.fps };
+    state.generation.value = { status: 'running', fraction, windows, ...(range ? { range } : {}) };
   };
 
   async function generate(call: GenerateCall = {}): Promise<GenerateSummary> {
