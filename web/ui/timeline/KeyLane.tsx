@@ -73,7 +73,8 @@ export function KeyLane() {
   return (
     <div
       class="key-lane"
-      role="list"
+      // A list without items is none.
+      role={keys.value.length > 0 ? 'list' : 'group'}
       aria-label={`Key poses, ${keys.value.length}`}
       ref={list}
       style={{ top: `${LANES.keys.top}px`, height: `${LANES.keys.height}px` }}
