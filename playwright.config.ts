@@ -29,7 +29,7 @@ export default defineConfig({
     },
     {
       name: 'stage',
-      testMatch: /(page|timeline|pose-editor|stage)\.spec\.ts/,
+      testMatch: /(page|timeline|pose-editor|studio|stage)\.spec\.ts/,
       use: { launchOptions: launch('--enable-unsafe-swiftshader') },
     },
     {
