@@ -24,7 +24,7 @@ export default defineConfig({
   projects: [
     {
       name: 'no stage',
-      testMatch: /(api|library|songs|generate|ranges|report|beats|layout|touch|a11y|project)\.spec\.ts/,
+      testMatch: /(api|library|songs|generate|ranges|report|beats|touch|a11y|project)\.spec\.ts/,
       use: { viewport: { width: 640, height: 480 }, launchOptions: launch('--disable-3d-apis') },
     },
     {
