@@ -90,6 +90,8 @@ export const SHORTCUTS: readonly Shortcut[] = [
     keys: ['Delete', 'Backspace', 'Shift+Enter'],
     label: 'Delete the selected key poses',
     group: 'Key poses',
+    // In the editor it would take away what is being edited, out of reach of the editor's undo.
+    when: (store) => !posing(store),
     run: (store) => store.deleteKeys(selectedOrHere(store)),
   },
   {
