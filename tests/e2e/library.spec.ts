@@ -22,7 +22,7 @@ async function openWithSong(page: Page): Promise<void> {
 function bvh(): Buffer {
   const limbs = (side: string, x: number) => [
     `JOINT ${side}UpLeg`, `${x * 9} -5 0`, `JOINT ${side}Leg`, '0 -45 0', `JOINT ${side}Foot`, '0 -42 -3', '}', '}', '}',
-    `JOINT ${side}Arm`, `${x * 18} 45 0`, `JOINT ${side}ForeArm`, `${x * 27} 0 0`, `JOINT ${side}Hand`, `${x * 25} 0 0`, '}', '}', '}',
+    `JOINT ${side}Arm`, `${x * 18} 45 0`, `JOINT ${side}ForeArm`, `${x * 26} -1 -2`, `JOINT ${side}Hand`, `${x * 25} 0 0`, '}', '}', '}',
   ]; // prettier-ignore
   const parts = ['ROOT Hips', '0 95 0', 'JOINT Head', '0 65 0', '}', ...limbs('Left', 1), ...limbs('Right', -1), '}'];
   const joints = parts.map((part) =>
