@@ -1,5 +1,4 @@
 import { limbOf } from '../../core/pose-tools';
-import { SaveDraft } from '../library/SaveDraft';
 import { BlendSection } from '../pose/BlendSection';
 import { JointSection } from '../pose/JointSection';
 import { LimbSection } from '../pose/LimbSection';
@@ -18,7 +17,6 @@ export function PoseEditor() {
       <JointSection />
       {limb && <LimbSection limb={limb} />}
       <PoseSection />
-      <SaveDraft />
       <TurnSection />
       <BlendSection />
       <VariationSection />
