@@ -3,7 +3,6 @@ import { useStore } from '../store-context';
 import type { Panel } from '../../app/state';
 import { ReportPanel } from '../report/ReportPanel';
 import { ImportPanel } from '../library/ImportPanel';
-import { SaveDraft } from '../library/SaveDraft';
 import { DancePanel } from './DancePanel';
 import { Library } from './Library';
 import { PoseEditor } from './PoseEditor';
@@ -18,6 +17,8 @@ const TABS: readonly { id: Panel; label: string }[] = [
 export function Inspector() {
   const store = useStore();
   const { panel, draft, poseImport } = store.state;
+  // What is opened in the place of the library begins at its top, wherever the library was scrolled to.
+  const content = draft.value ? 'editor' : poseImport.value ? 'import' : 'library';
   const onKeyDown = (event: KeyboardEvent) => {
     const now = TABS.findIndex((tab) => tab.id === panel.value);
     const targets: Record<string, number> = {
@@ -59,7 +60,7 @@ export function Inspector() {
         <SheetHandle />
       </div>
       <div
-        key={panel.value}
+        key={`${panel.value} ${content}`}
         id="inspector-panel"
         class="panel"
         role="tabpanel"
@@ -71,10 +72,7 @@ export function Inspector() {
         ) : panel.value === 'report' ? (
           <ReportPanel />
         ) : draft.value ? (
-          <>
-            <SaveDraft />
-            <PoseEditor />
-          </>
+          <PoseEditor />
         ) : poseImport.value ? (
           <ImportPanel />
         ) : (
