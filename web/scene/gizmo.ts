@@ -68,6 +68,12 @@ export class Gizmo {
     this.controls.setTranslationSnap(on ? SNAP.move : null);
   }
 
+  /** Whether it takes the pointer's presses. */
+  set enabled(on: boolean) {
+    this.controls.enabled = on;
+    if (!on) this.controls.axis = null;
+  }
+
   /** Whether it is being dragged. */
   get dragging(): boolean {
     return this.controls.dragging;

@@ -6,7 +6,9 @@ export interface PointerHost {
   /** The gizmo has the pointer. */
   readonly taken: boolean;
   /** Joint whose dot is under the pointer, where dots can be dragged. */
-  grabbable(event: PointerEvent): number | null;
+  grabbable(event: PointerEvent, claimed: boolean): number | null;
+  /** Whether the press is on the chosen joint's own dot: that is for dragging it freely, although the arrows begin there too. */
+  claim(event: PointerEvent): boolean;
   hover(event: PointerEvent | null): void;
   click(event: PointerEvent): void;
   /** A dot is held and begins to move. */
@@ -23,6 +25,7 @@ const CLICK_SLACK = 6;
 
 /** Listens to an element for as long as the signal is not aborted. */
 export class PosePointer {
+  private claimed = false;
   private pressed: { event: PointerEvent; dot: number | null; moving: boolean } | null = null;
 
   constructor(
@@ -32,6 +35,12 @@ export class PosePointer {
   ) {
     const listen = (type: 'pointerdown' | 'pointermove' | 'pointerup', act: (event: PointerEvent) => void) =>
       element.addEventListener(type, act, { signal });
+    // Captured: claimed before the gizmo hears of the press, which otherwise has the first word.
+    element.addEventListener(
+      'pointerdown',
+      (event) => (this.claimed = host.active && event.isPrimary && event.button === 0 && host.claim(event)),
+      { signal, capture: true },
+    );
     listen('pointerdown', (event) => this.down(event));
     listen('pointermove', (event) => this.move(event));
     listen('pointerup', (event) => this.up(event));
@@ -56,7 +65,7 @@ export class PosePointer {
     if (!event.isPrimary || event.button !== 0) return;
     this.pressed = null;
     if (!this.host.active || this.host.taken) return;
-    const dot = this.host.grabbable(event);
+    const dot = this.host.grabbable(event, this.claimed);
     this.pressed = { event, dot, moving: false };
     if (dot === null) return;
     this.host.orbit(false);

@@ -227,14 +227,23 @@ export class Posing {
         get taken() {
           return posing.dragging;
         },
-        grabbable: (event) => (this.tools.mode === 'move' && !this.gizmo?.hovered ? this.picker.dot(event) : null),
+        claim: (event) => {
+          const own = this.tools.mode === 'move' && this.selected !== null && this.picker.dot(event) === this.selected;
+          this.gizmo!.enabled = !own && this.selected !== null;
+          return own;
+        },
+        grabbable: (event, claimed) =>
+          this.tools.mode === 'move' && (claimed || !this.gizmo?.hovered) ? this.picker.dot(event) : null,
         hover: (event) => this.hover(event && !this.gizmo?.hovered ? this.picker.joint(event) : null),
         click: (event) => this.select(this.picker.joint(event)),
         grab: (joint, event) => this.grab(joint, event),
         drag: (event) => this.dragHeld(event),
         drop: () => this.finish(),
         cancel: () => this.cancelDrag(),
-        orbit,
+        orbit: (on) => {
+          if (on && this.gizmo) this.gizmo.enabled = this.selected !== null;
+          orbit(on);
+        },
       },
       this.abort.signal,
     );
