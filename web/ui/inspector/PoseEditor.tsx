@@ -1,4 +1,5 @@
 import { limbOf } from '../../core/pose-tools';
+import { SaveDraft } from '../library/SaveDraft';
 import { BlendSection } from '../pose/BlendSection';
 import { JointSection } from '../pose/JointSection';
 import { LimbSection } from '../pose/LimbSection';
@@ -17,6 +18,7 @@ export function PoseEditor() {
       <JointSection />
       {limb && <LimbSection limb={limb} />}
       <PoseSection />
+      <SaveDraft />
       <TurnSection />
       <BlendSection />
       <VariationSection />
