@@ -22,6 +22,11 @@ const another = async (context: BrowserContext) => {
   await open(page);
   return page;
 };
+/** Choosers are caught from here on; catching only the awaited one would begin too late for a key that is pressed at once. */
+const catchChoosers = async (page: Page) => {
+  page.on('filechooser', () => undefined);
+  await page.waitForTimeout(200);
+};
 const openFile = async (page: Page, name: string, buffer: Buffer) => {
   const chooser = page.waitForEvent('filechooser');
   await page.keyboard.press('Control+o');
@@ -48,6 +53,7 @@ test('a project saved with its song opens in another browser: the same document,
   const context = await browser.newContext();
   const other = await context.newPage();
   await open(other, '?backend=wasm');
+  await catchChoosers(other);
   await openFile(other, file.name, file.bytes);
   await expect.poll(() => json(other)).toBe(before);
   await expect(other.locator('.song-title')).toContainText('My song.wav');
@@ -82,6 +88,7 @@ test('without its song it is readable JSON that asks for the song by name and kn
   const context = await browser.newContext();
   const other = await context.newPage();
   await open(other);
+  await catchChoosers(other);
   const demo = await json(other);
   await openFile(other, file.name, file.bytes);
   await expect(other.getByText('Now drop “My song.wav”, the song of this project.')).toBeVisible();
@@ -103,6 +110,7 @@ test('broken, newer and hostile files are refused in a sentence and change nothi
   await loadSong(page, SONG, 'My song.wav');
   await place(page, [1, 3]);
   const before = await json(page);
+  await catchChoosers(page);
   const whole = await page.evaluate(async () => {
     const blob = await window.posebeat.exportAs('project', { song: true });
     return [...new Uint8Array(await blob.arrayBuffer())];
@@ -151,7 +159,10 @@ test('a reload and a crash in the middle of editing lose nothing that was saved'
   await saved(page);
   const second = await json(page);
   const client = await context.newCDPSession(page);
-  await client.send('Page.crash').catch(() => undefined);
+  const crashed = page.waitForEvent('crash');
+  // A page that crashes never answers.
+  client.send('Page.crash').catch(() => undefined);
+  await crashed;
   const again = await another(context);
   expect(await json(again)).toBe(second);
   await expect(again.locator('.song-title')).toContainText('My song.wav');
