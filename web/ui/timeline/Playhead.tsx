@@ -1,11 +1,12 @@
 import { useComputed, useSignalEffect } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { barAndBeat, clockTime, stepBeat } from '../../app/snapping';
+import spec from '../../core/spec.json';
 import { useStore } from '../store-context';
 import { timeToX } from './geometry';
 import { timeAtX } from './surface';
 
-const FRAME = 1 / 30;
+const FRAME = 1 / spec.fps;
 
 /** Where the song is: a line, and a slider for the keyboard. */
 export function Playhead() {

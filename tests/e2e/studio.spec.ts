@@ -1,0 +1,308 @@
+/** The whole way through the studio, once by mouse and once by keyboard alone: from a song to a dance, back to the start and on again. */
+import { expect, test, type Page } from '@playwright/test';
+import { collectErrors, open } from './support/page';
+import { alongTheArm, figure, findJoint, newPose } from './support/posing';
+import { wav } from './support/songs';
+
+test.use({ viewport: { width: 1440, height: 900 } });
+test.setTimeout(300_000);
+
+const SECONDS = 36;
+/** Beats of a second after tapping, so bars of four. */
+const BAR = 4;
+const song = () => ({ name: 'long road.wav', mimeType: 'audio/wav', buffer: wav({ seconds: SECONDS }) });
+
+const project = (page: Page) => page.evaluate(() => window.posebeat.document());
+const dance = (page: Page) =>
+  page.evaluate(() => {
+    const { rotations, root } = window.posebeat.motion();
+    return [...rotations, ...root];
+  });
+const undoButton = (page: Page) => page.getByRole('banner').getByRole('button', { name: 'Undo' });
+const redoButton = (page: Page) => page.getByRole('banner').getByRole('button', { name: 'Redo' });
+
+async function picture(page: Page, name: string): Promise<void> {
+  await page.waitForTimeout(400);
+  await page.screenshot({ path: test.info().outputPath(`${name}.png`) });
+}
+
+/** Waits until nothing is being made and the dance is up to date. */
+async function calm(page: Page): Promise<void> {
+  await expect(page.locator('.generate.busy')).toHaveCount(0, { timeout: 90_000 });
+  await expect(page.locator('.generate')).toHaveClass(/fresh/);
+}
+
+/** Eight taps, a second apart, while the song plays: half of the tempo that was heard. A busy machine taps unevenly: once more, then. */
+async function tap(page: Page, press: () => Promise<void>): Promise<void> {
+  await press(); // starts the song
+  await expect(page.getByRole('button', { name: 'Pause' })).toBeVisible();
+  for (let attempt = 0; attempt < 4; attempt++) {
+    const started = Date.now();
+    for (let i = 1; i <= 8; i++) {
+      await page.waitForTimeout(Math.max(0, started + i * 1000 - Date.now()));
+      await press();
+    }
+    await expect(page.locator('.tap-text')).toHaveText('Tap');
+    const { grid } = await project(page);
+    if (Math.abs(grid!.tempo - 60) < 2) return;
+    await page.keyboard.press('Control+z');
+  }
+  throw new Error('Four times eight taps a second apart never gave 60 beats a minute.');
+}
+
+/** All steps back and all steps on again: the same documents in between, to the last bit, and the same dance. */
+async function thereAndBack(page: Page, undo: () => Promise<void>, redo: () => Promise<void>): Promise<void> {
+  const last = await project(page);
+  const danced = await dance(page);
+  const before = [last];
+  while (await undoButton(page).isEnabled()) {
+    await undo();
+    await page.waitForTimeout(60);
+    before.push(await project(page));
+    expect(before.length, 'steps back').toBeLessThan(80);
+  }
+  expect(before.length).toBeGreaterThan(12);
+  expect(before.at(-1)!.keyPoses.map(({ name }) => name)).not.toContain('Reach');
+  for (let step = before.length - 2; step >= 0; step--) {
+    await redo();
+    await page.waitForTimeout(60);
+    expect(await project(page)).toEqual(before[step]);
+  }
+  await expect(redoButton(page)).toBeDisabled();
+  await calm(page);
+  expect(await dance(page)).toEqual(danced);
+
+  // What was kept is there after a reload.
+  await page.waitForTimeout(1500);
+  await page.reload();
+  await page.waitForFunction(() => 'posebeat' in window);
+  await page.evaluate(() => window.posebeat.ready);
+  expect(await project(page)).toEqual(last);
+  await calm(page);
+  expect(await dance(page)).toEqual(danced);
+  await expect(page.getByRole('list', { name: 'My poses' }).locator('.pose-tile')).toHaveText(['Reach']);
+}
+
+/** Eight key poses on beats, the own one first, and two takes of bars 5 to 8. */
+async function checkProject(page: Page): Promise<void> {
+  const { keyPoses, grid, ranges } = await project(page);
+  expect(keyPoses).toHaveLength(8);
+  expect(keyPoses[0].name).toBe('Reach');
+  for (const { time } of keyPoses)
+    expect(Math.min(...grid!.beats.map((beat) => Math.abs(beat - time)))).toBeLessThan(0.02);
+  expect(ranges).toHaveLength(1);
+  expect(ranges[0].takes).toHaveLength(2);
+  const [five, nine] = [grid!.downbeats[4], grid!.downbeats[8]];
+  expect(ranges[0].start).toBeCloseTo(five, 1);
+  expect(ranges[0].end).toBeCloseTo(nine, 1);
+}
+
+test('by mouse', async ({ page }) => {
+  const errors = collectErrors(page);
+  await open(page, '?backend=wasm');
+  const skip = page.getByRole('button', { name: 'Skip' });
+  if (await skip.isVisible()) await skip.click();
+  await picture(page, '1-open');
+
+  const { name, mimeType, buffer } = song();
+  const transfer = await page.evaluateHandle(
+    ({ name, mimeType, base64 }) => {
+      const bytes = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+      const data = new DataTransfer();
+      data.items.add(new File([bytes], name, { type: mimeType }));
+      return data;
+    },
+    { name, mimeType, base64: buffer.toString('base64') },
+  );
+  for (const type of ['dragenter', 'dragover', 'drop'])
+    await page.locator('.stage').dispatchEvent(type, { dataTransfer: transfer });
+  await expect(page.locator('.song-title')).toContainText('long road.wav');
+  await expect(page.getByRole('button', { name: 'Beats', exact: true })).toBeEnabled({ timeout: 60_000 });
+  await picture(page, '2-song');
+
+  const tapButton = (await page.locator('.bar-button.tap').boundingBox())!;
+  await page.mouse.move(tapButton.x + 20, tapButton.y + tapButton.height / 2);
+  await tap(page, async () => {
+    await page.mouse.down();
+    await page.mouse.up();
+  });
+  await page.getByRole('button', { name: 'Pause' }).click();
+  await picture(page, '3-tapped');
+
+  await newPose(page);
+  await page.getByRole('button', { name: 'Move joints' }).click();
+  const wrist = await findJoint(page, 'Left wrist', alongTheArm('right'));
+  await page.mouse.move(wrist.x, wrist.y);
+  await page.mouse.down();
+  await page.mouse.move(wrist.x - 40, wrist.y - 60, { steps: 6 });
+  await page.mouse.move(wrist.x - 70, wrist.y - 120, { steps: 6 });
+  await page.mouse.up();
+  await picture(page, '4-inverse-kinematics');
+  await page.getByRole('button', { name: 'Turn joints' }).click();
+  const elbow = await findJoint(page, 'Right elbow', alongTheArm('left'));
+  await page.mouse.click(elbow.x, elbow.y);
+  const radius = (await figure(page).boundingBox())!.height * 0.0736;
+  await page.mouse.move(elbow.x, elbow.y - radius);
+  await page.mouse.down();
+  await page.mouse.move(elbow.x - radius * 0.5, elbow.y - radius * 0.9, { steps: 4 });
+  await page.mouse.move(elbow.x - radius * 0.9, elbow.y - radius * 0.5, { steps: 4 });
+  await page.mouse.up();
+  await page.getByRole('button', { name: 'Mirror', exact: true }).first().click();
+  await picture(page, '5-mirrored');
+  await page.getByLabel('Name of the pose').click();
+  await page.keyboard.type('Reach');
+  await page.getByRole('button', { name: 'Save', exact: true }).click();
+  await page.getByRole('toolbar', { name: 'Pose editor' }).getByRole('button', { name: 'Cancel' }).click();
+  const own = page.getByRole('list', { name: 'My poses' }).locator('.pose-tile');
+  await expect(own).toHaveText(['Reach']);
+
+  await page.getByRole('button', { name: 'Show the whole song' }).click();
+  const lane = (await page.locator('.key-lane').boundingBox())!;
+  for (let bar = 0; bar < 8; bar++) {
+    const tile = bar === 0 ? own : page.locator('.pose-sections .pose-tile').nth(bar * 5);
+    await tile.scrollIntoViewIfNeeded();
+    const from = (await tile.boundingBox())!;
+    await page.mouse.move(from.x + from.width / 2, from.y + 30);
+    await page.mouse.down();
+    await page.mouse.move(from.x, from.y + 60, { steps: 3 });
+    await page.mouse.move(lane.x + lane.width * ((bar * BAR + 2.2) / SECONDS), lane.y + lane.height / 2, { steps: 6 });
+    await page.mouse.up();
+    expect((await project(page)).keyPoses).toHaveLength(bar + 1);
+  }
+  await picture(page, '6-eight-poses');
+
+  await page.locator('.generate').click();
+  await calm(page);
+  await picture(page, '7-dance');
+
+  const { grid } = await project(page);
+  const x = (time: number) => lane.x + 30 + (time / SECONDS) * (lane.width - 60);
+  const ruler = (await page.locator('.timeline-surface').boundingBox())!.y + 10;
+  await page.mouse.move(x(grid!.downbeats[4]), ruler);
+  await page.mouse.down();
+  await page.mouse.move(x(grid!.downbeats[6]), ruler, { steps: 4 });
+  await page.mouse.move(x(grid!.downbeats[8]), ruler, { steps: 4 });
+  await page.mouse.up();
+  const tools = page.getByRole('group', { name: 'Selected range, bars 5–8' });
+  const chip = page.locator('.range-chip');
+  await tools.getByRole('button', { name: 'Regenerate 5–8' }).click();
+  await expect(chip).toHaveText('1/1');
+  await calm(page);
+  await tools.getByRole('button', { name: 'Regenerate 5–8' }).click();
+  await expect(chip).toHaveText('2/2');
+  await calm(page);
+  await tools.getByRole('button', { name: 'Previous take of the range' }).click();
+  await expect(chip).toHaveText('1/2');
+  await calm(page);
+  await picture(page, '8-takes');
+  await checkProject(page);
+
+  await thereAndBack(
+    page,
+    () => undoButton(page).click(),
+    () => redoButton(page).click(),
+  );
+  await picture(page, '9-back');
+  expect(errors).toEqual([]);
+});
+
+test('by keyboard alone', async ({ page }) => {
+  const errors = collectErrors(page);
+  const press = (keys: string, times = 1) =>
+    Array.from({ length: times }).reduce<Promise<void>>(
+      (before) => before.then(() => page.keyboard.press(keys)),
+      Promise.resolve(),
+    );
+  /** Goes on with Tab, or back, until the focus is on what a selector finds. */
+  const tabTo = async (selector: string, back = false) => {
+    for (let i = 0; i < 150; i++) {
+      if (await page.evaluate((wanted) => document.activeElement?.matches(wanted), selector)) return;
+      await press(back ? 'Shift+Tab' : 'Tab');
+    }
+    throw new Error(`Tab never reached ${selector}.`);
+  };
+  await open(page, '?backend=wasm');
+  const chooser = page.waitForEvent('filechooser');
+  await tabTo('.drop-target');
+  await press('Enter');
+  await (await chooser).setFiles(song());
+  await expect(page.locator('.song-title')).toContainText('long road.wav');
+  await expect(page.getByRole('button', { name: 'Beats', exact: true })).toBeEnabled({ timeout: 60_000 });
+
+  await tap(page, () => press('t'));
+  await press(' ');
+  await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
+
+  await tabTo('[role=tab][aria-selected=true]');
+  await tabTo('.pose-actions button');
+  await press('Enter');
+  await expect(figure(page)).toBeVisible();
+  await tabTo('[role=application]', true);
+  // From the hips up the spine to the chest, out to the left arm and down to the wrist.
+  await press('ArrowDown');
+  for (const key of ['ArrowDown', 'ArrowDown', 'ArrowDown', 'ArrowRight', 'ArrowDown', 'ArrowDown', 'ArrowDown'])
+    await press(`Control+${key}`);
+  const joint = page.getByLabel('Joint', { exact: true });
+  await expect(joint).toHaveValue('20');
+  await press('w');
+  await press('ArrowUp', 12);
+  await page.waitForTimeout(700);
+  await press('e');
+  await press('Control+ArrowUp');
+  await expect(joint).toHaveValue('18');
+  await press('ArrowLeft', 4);
+  await page.waitForTimeout(700);
+  await press('m');
+  await tabTo('.save-draft input');
+  await page.keyboard.type('Reach');
+  await press('Enter');
+  await press('Escape');
+  await press('Escape');
+  await expect(figure(page)).toHaveCount(0);
+
+  await press('0');
+  for (let bar = 0; bar < 8; bar++) {
+    await tabTo('[role=slider].playhead-grip', bar > 0);
+    await press('Home');
+    await press('PageDown', bar);
+    await press('ArrowRight', 2);
+    await tabTo('.pose-tile[tabindex="0"]');
+    if (bar === 1) {
+      // From the own pose into the library.
+      await press('ArrowDown');
+    } else if (bar > 1) await press('ArrowRight');
+    await press('Enter');
+    expect((await project(page)).keyPoses).toHaveLength(bar + 1);
+  }
+  await press('Escape');
+
+  await press('g');
+  await calm(page);
+  await tabTo('[role=slider].playhead-grip', true);
+  await press('Home');
+  const five = (await project(page)).grid!.downbeats[4];
+  for (let i = 0; i < 60; i++) {
+    const now = Number(await page.locator('.playhead-grip').getAttribute('aria-valuenow'));
+    if (now > five - 0.15) break;
+    await press('ArrowRight');
+  }
+  await press('l');
+  await press('Shift+G');
+  const chip = page.locator('.range-chip');
+  await expect(chip).toHaveText('1/1');
+  await calm(page);
+  await press('Shift+G');
+  await expect(chip).toHaveText('2/2');
+  await calm(page);
+  await press('Alt+ArrowLeft');
+  await expect(chip).toHaveText('1/2');
+  await calm(page);
+  await checkProject(page);
+
+  await thereAndBack(
+    page,
+    () => press('Control+z'),
+    () => press('Control+Shift+z'),
+  );
+  expect(errors).toEqual([]);
+});
