@@ -90,6 +90,15 @@ test('rejected input says why and leaves the document as it was', async ({ page 
   expect(await page.evaluate(() => JSON.stringify(window.posebeat.document()))).toBe(before);
 });
 
+test('the demo’s own song can be loaded while the demo’s sound is still on its way', async ({ page }) => {
+  await open(page);
+  const { duration } = await page.evaluate(async () => {
+    const file = new File([await (await fetch('demo/song.mp3')).blob()], 'again.mp3', { type: 'audio/mpeg' });
+    return window.posebeat.loadSong(file);
+  });
+  expect(duration).toBeGreaterThan(55);
+});
+
 test('what is not there yet says so', async ({ page }) => {
   await open(page);
   expect(await rejection(page.evaluate(() => window.posebeat.suggestKeyPoses()))).toMatch(/not available yet/i);

@@ -2,12 +2,12 @@
 import { readFileSync } from 'node:fs';
 import { expect, test, type Page } from '@playwright/test';
 import { collectErrors, loadSong, open } from './support/page';
+import { alongTheArm, figure, findJoint, newPose } from './support/posing';
 import { wav } from './support/songs';
 
 const spec = JSON.parse(readFileSync(new URL('../../web/core/spec.json', import.meta.url), 'utf8')) as {
   skeleton: { joints: string[] };
 };
-const figure = (page: Page) => page.getByRole('application', { name: 'Figure' });
 const joint = (page: Page) => page.getByLabel('Joint', { exact: true });
 
 // A small stage: without a graphics card every pixel costs.
@@ -16,23 +16,6 @@ test.use({ viewport: { width: 960, height: 640 } });
 test.beforeEach(async ({ page }) => {
   await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
 });
-
-/** The pointer goes along a horizontal line of the stage, shares of its size, until a joint's label shows. */
-async function find(page: Page, label: string, heights: number[], from: number): Promise<{ x: number; y: number }> {
-  const box = (await figure(page).boundingBox())!;
-  for (const height of heights) {
-    for (let i = 0; i < 50; i++) {
-      const [x, y] = [box.x + box.width * (from + i * 0.005), box.y + box.height * height];
-      await page.mouse.move(x, y);
-      const text = await page
-        .locator('.joint-tip')
-        .innerText({ timeout: 50 })
-        .catch(() => '');
-      if (text === label) return { x, y };
-    }
-  }
-  throw new Error(`The pointer never found "${label}".`);
-}
 
 /** The pose on the timeline, as one angle per joint, degrees. */
 async function addAndRead(page: Page): Promise<(name: string) => number> {
@@ -47,18 +30,15 @@ async function addAndRead(page: Page): Promise<(name: string) => number> {
 async function startMoving(page: Page): Promise<void> {
   await open(page);
   await loadSong(page, wav({ seconds: 6 }));
-  await page.getByRole('tab', { name: 'Poses' }).click();
-  await page.getByRole('button', { name: 'New pose' }).click();
-  await expect(figure(page)).toBeVisible();
+  await newPose(page);
   await page.keyboard.press('w');
-  await page.waitForTimeout(600);
 }
 
 test('a hand is dragged by its dot; Esc takes the drag back', async ({ page }) => {
   const errors = collectErrors(page);
   await startMoving(page);
-  const wrist = await find(page, 'Left wrist', [0.3, 0.32, 0.34, 0.36, 0.28], 0.56);
-  await page.mouse.move(wrist.x + 6, wrist.y);
+  const wrist = await findJoint(page, 'Left wrist', alongTheArm('right'));
+  await page.mouse.move(wrist.x, wrist.y);
 
   await page.mouse.down();
   await page.mouse.move(wrist.x - 20, wrist.y + 60, { steps: 5 });
@@ -67,7 +47,7 @@ test('a hand is dragged by its dot; Esc takes the drag back', async ({ page }) =
   await expect(joint(page)).toHaveValue('20');
   await expect(page.getByRole('button', { name: 'Undo' })).toBeDisabled();
 
-  await page.mouse.move(wrist.x + 6, wrist.y);
+  await page.mouse.move(wrist.x, wrist.y);
   await page.mouse.down();
   await page.mouse.move(wrist.x - 70, wrist.y - 30, { steps: 8 });
   await page.waitForTimeout(500);

@@ -1,50 +1,13 @@
 import AxeBuilder from '@axe-core/playwright';
 import { expect, test, type Page } from '@playwright/test';
 import { collectErrors, loadSong, open } from './support/page';
+import { alongTheArm, figure, findJoint, newPose } from './support/posing';
 import { wav } from './support/songs';
 
 const keyPoses = (page: Page) => page.evaluate(() => window.posebeat.document().keyPoses);
 const joint = (page: Page) => page.getByLabel('Joint', { exact: true });
 const angles = (page: Page) =>
   Promise.all(['x', 'y', 'z'].map(async (axis) => Number(await page.getByLabel(`Turn ${axis}, degrees`).inputValue())));
-const figure = (page: Page) => page.getByRole('application', { name: 'Figure' });
-
-/** Opens the editor with the figure standing, its arms out, and waits until it is drawn. */
-async function newPose(page: Page): Promise<void> {
-  await page.getByRole('tab', { name: 'Poses' }).click();
-  await page.getByRole('button', { name: 'New pose' }).click();
-  await expect(figure(page)).toBeVisible();
-  await page.waitForTimeout(600);
-}
-
-/** Where a joint of the standing figure is on the screen: the pointer goes along a line until its label says so. */
-async function find(
-  page: Page,
-  label: string,
-  line: (box: Box) => [number, number][],
-): Promise<{ x: number; y: number }> {
-  const box = (await figure(page).boundingBox())!;
-  for (const [x, y] of line(box)) {
-    await page.mouse.move(x, y);
-    const tip = page.locator('.joint-tip', { hasText: label });
-    if ((await tip.count()) === 0) continue;
-    // The label hangs on the joint itself.
-    const [left, top] = await tip.evaluate((element) => [element.style.left, element.style.top].map(parseFloat));
-    return { x: box.x + left, y: box.y + top };
-  }
-  throw new Error(`The pointer never found "${label}".`);
-}
-type Box = { x: number; y: number; width: number; height: number };
-
-/** Points of the left half of the figure's outstretched arms, from the shoulder outwards. */
-const alongTheLeftArm = (box: Box): [number, number][] =>
-  [0.3, 0.33, 0.36].flatMap((height) =>
-    Array.from({ length: 40 }, (_, i): [number, number] => [
-      box.x + box.width * (0.53 + i * 0.004),
-      box.y + box.height * height,
-    ]),
-  );
-
 // A small stage: without a graphics card every pixel costs.
 test.use({ viewport: { width: 960, height: 640 } });
 
@@ -57,7 +20,7 @@ test('by mouse: a joint is clicked on the figure, turned by a ring, undone, redo
   await open(page);
   await loadSong(page, wav({ seconds: 6 }));
   await newPose(page);
-  const elbow = await find(page, 'Left elbow', alongTheLeftArm);
+  const elbow = await findJoint(page, 'Left elbow', alongTheArm('right'));
   await page.mouse.click(elbow.x, elbow.y);
   await expect(joint(page)).toHaveValue('18');
   expect(await angles(page)).toEqual([0, 0, 0]);
@@ -142,7 +105,7 @@ test('a hand is dragged and the body follows; a place is typed in centimetres', 
   await open(page);
   await newPose(page);
   await page.keyboard.press('w');
-  const wrist = await find(page, 'Left wrist', alongTheLeftArm);
+  const wrist = await findJoint(page, 'Left wrist', alongTheArm('right'));
   await page.mouse.move(wrist.x, wrist.y);
   await page.mouse.down();
   await page.mouse.move(wrist.x - 30, wrist.y + 60, { steps: 6 });

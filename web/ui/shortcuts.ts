@@ -1,5 +1,6 @@
 /** One table of keys: it feeds the bindings, the tooltips and the help overlay. */
 import type { Store } from '../app/store';
+import spec from '../core/spec.json';
 import { chooseProject } from './files';
 
 /** One action and its keys. */
@@ -20,7 +21,7 @@ export interface Shortcut {
 const selectedOrHere = (store: Store): ReadonlySet<string> => {
   const { selection, document, time } = store.state;
   if (selection.value.size > 0) return selection.value;
-  const here = document.value.keyPoses.find((key) => Math.abs(key.time - time.value) < 1 / 30);
+  const here = document.value.keyPoses.find((key) => Math.abs(key.time - time.value) < 1 / spec.fps);
   return new Set(here ? [here.id] : []);
 };
 

@@ -20,11 +20,11 @@ export async function findJoint(
   const box = (await figure(page).boundingBox())!;
   for (const [x, y] of points(box)) {
     await page.mouse.move(x, y);
-    const text = await page
-      .locator('.joint-tip')
-      .innerText({ timeout: 50 })
-      .catch(() => '');
-    if (text === label) return { x, y };
+    const tip = page.locator('.joint-tip', { hasText: label });
+    if ((await tip.count()) === 0) continue;
+    // The label hangs on the joint itself.
+    const [left, top] = await tip.evaluate((element) => [element.style.left, element.style.top].map(parseFloat));
+    return { x: box.x + left, y: box.y + top };
   }
   throw new Error(`The pointer never found "${label}".`);
 }

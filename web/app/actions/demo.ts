@@ -21,7 +21,11 @@ export function demoActions(context: Context, songs: SongActions, dance: DanceAc
   const { state, services, history } = context;
   const { player } = services;
 
-  const isCurrent = (song: Song) => state.song.value?.reference.hash === song.reference.hash;
+  // The visitor may have dropped the same file meanwhile: that is another song then.
+  const isCurrent = ({ reference }: Song) => {
+    const now = state.song.value;
+    return now !== null && now.demo && now.reference.hash === reference.hash;
+  };
 
   /** The demo's song arrives after its dance: the timer already runs, the sound joins in. */
   async function bringSound(song: Song, url: string): Promise<void> {
