@@ -45,8 +45,8 @@ async function tap(page: Page, press: () => Promise<void>): Promise<void> {
     }
     await expect(page.locator('.tap-text')).toHaveText('Tap');
     const { grid } = await project(page);
-    if (Math.abs(grid!.tempo - 60) < 2) return;
-    await page.keyboard.press('Control+z');
+    if (grid && Math.abs(grid.tempo - 60) < 2) return;
+    if (grid) await page.keyboard.press('Control+z');
   }
   throw new Error('Four times eight taps a second apart never gave 60 beats a minute.');
 }
@@ -127,7 +127,9 @@ test('by mouse', async ({ page }) => {
     await page.mouse.down();
     await page.mouse.up();
   });
-  await page.getByRole('button', { name: 'Pause' }).click();
+  const pause = page.getByRole('button', { name: 'Pause' });
+  // After several rounds of taps the song may be over by itself.
+  if (await pause.isVisible()) await pause.click();
   await picture(page, '3-tapped');
 
   await newPose(page);
@@ -231,8 +233,11 @@ test('by keyboard alone', async ({ page }) => {
   await expect(page.getByRole('button', { name: 'Beats', exact: true })).toBeEnabled({ timeout: 60_000 });
 
   await tap(page, () => press('t'));
-  await tabTo('.transport .play');
-  await press('Enter');
+  // After several rounds of taps the song may be over by itself.
+  if (await page.getByRole('button', { name: 'Pause' }).isVisible()) {
+    await tabTo('.transport .play');
+    await press('Enter');
+  }
   await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
 
   await tabTo('[role=tab][aria-selected=true]');

@@ -45,7 +45,8 @@ export function Playhead() {
       End: () => state.duration.value,
     };
     const target = targets[event.key];
-    if (!target) return;
+    // With Alt, Ctrl or Cmd an arrow is a key of the table.
+    if (!target || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     store.seek(target());
   };
