@@ -172,6 +172,7 @@ test('without a mouse: through the grid by arrow keys, adding, copying, renaming
   await expect(own(page).locator('.pose-tile')).toHaveText(['Scarecrow']);
   await expect(own(page).locator('.pose-tile')).toBeFocused();
   await page.keyboard.press('Shift+F10');
+  await expect(page.getByRole('menuitem').first()).toBeFocused();
   await page.keyboard.press('Escape');
   await expect(page.getByRole('menu')).toHaveCount(0);
   await page.keyboard.press('Delete');
