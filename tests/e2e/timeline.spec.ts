@@ -238,9 +238,9 @@ test('key poses by keyboard alone: walk, select, copy, lock, strength, distribut
   await page.keyboard.press('0');
   const whole = await scale();
   await page.keyboard.press('Shift+0');
-  expect(await scale()).toBeGreaterThan(whole * 2);
+  await expect.poll(scale).toBeGreaterThan(whole * 2);
   await page.keyboard.press('0');
-  expect(await scale()).toBeCloseTo(whole, 6);
+  await expect.poll(scale).toBeCloseTo(whole, 6);
   await page.keyboard.press('s');
   await expect(page.getByRole('radio', { name: 'Key poses snap to half beats' })).toBeChecked();
   expect(errors).toEqual([]);
