@@ -16,13 +16,15 @@ test('placing: a pose is held, dragged onto the lane and moved along it; a swipe
   const { beats } = await loadSong(page, wav({ seconds: 12 }));
   const fingers = await Fingers.of(page);
   const lane = (await page.locator('.key-lane').boundingBox())!;
+  await page.locator('.pose-tile').nth(1).scrollIntoViewIfNeeded();
   const tile = await middleOf(page, '.pose-tile', 1);
   const onLane = { x: lane.x + lane.width * 0.45, y: lane.y + lane.height / 2 };
 
   // A swipe over the poses scrolls them and places nothing.
-  const panel = page.locator('.panel');
+  const scrolled = () => page.locator('.panel').evaluate((element) => element.scrollTop);
+  const before = await scrolled();
   await fingers.drag([way(tile, { x: tile.x, y: tile.y - 120 }, 4)], { pause: 0 });
-  await expect.poll(() => panel.evaluate((element) => element.scrollTop)).toBeGreaterThan(20);
+  await expect.poll(scrolled).toBeGreaterThan(before + 20);
   expect(await keys(page)).toEqual([]);
 
   // Held and dragged it lands on a beat, and nothing scrolls.
