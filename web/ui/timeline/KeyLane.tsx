@@ -53,14 +53,13 @@ export function KeyLane() {
   });
   made.current = seen;
 
-  // Panning only moves the rail, zooming only changes its scale: nothing is rendered or laid out.
+  // Panning only moves the rail, zooming only what is on it: nothing is rendered or laid out.
   useSignalEffect(() => {
     const { start, pixelsPerSecond } = state.view.value;
     rail.current?.style.setProperty('transform', `translateX(${-start * pixelsPerSecond}px)`);
   });
-  useSignalEffect(() => {
-    rail.current?.style.setProperty('--scale', String(scale.value));
-  });
+  useSignalEffect(() => placeItems(rail.current, scale.value));
+  useLayoutEffect(() => placeItems(rail.current, scale.peek()));
 
   useLayoutEffect(() => {
     // Moving an element in the list takes its focus away, and a walk along the list gives it to another: put it there.
@@ -90,6 +89,14 @@ export function KeyLane() {
   );
 }
 
+/** Puts each key pose on its time. An inherited variable for the scale would cost the style of everything inside, each frame. */
+function placeItems(rail: HTMLElement | null, pixelsPerSecond: number): void {
+  for (const element of rail?.children ?? []) {
+    const { dataset, style } = element as HTMLElement;
+    style.left = `${Number(dataset.time) * pixelsPerSecond}px`;
+  }
+}
+
 function item({ key, index, width }: PlacedKey, count: number, chosen: boolean, tabStop: boolean): VNode {
   return (
     <div
@@ -98,7 +105,8 @@ function item({ key, index, width }: PlacedKey, count: number, chosen: boolean, 
       class="key-item"
       aria-posinset={index + 1}
       aria-setsize={count}
-      style={{ '--time': key.time, width: `${width}px` }}
+      data-time={key.time}
+      style={{ width: `${width}px`, marginLeft: `${-width / 2}px` }}
     >
       <KeyButton pose={key} width={width} chosen={chosen} tabStop={tabStop} />
     </div>
