@@ -1,18 +1,23 @@
 /**
  * Music features of wav files, with the very code that runs in the browser:
- *   npx tsx export/features.ts --out <folder> <song.wav>...
+ *   npx tsx export/features.ts --out <folder> [--danceformer] <song.wav>...
  * Writes for each song NAME.f32 (frames x 15 float32, little-endian, row-major) and NAME.json
  * {frames, fps, names, tempo, beatsPerBar, beats, downbeats, sampleRate, milliseconds}; times in seconds.
+ * With --danceformer the columns are those of the key pose model (web/core/beat-features.ts: MFCC, differences, energy, chroma, onset).
  */
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import { parseArgs } from 'node:util';
+import { beatFeatureNames, frameFeatures } from '../web/core/beat-features';
 import { analyse } from '../web/core/features';
 import { decodeWav, mixToMono } from '../web/core/wav';
 
-const { values, positionals } = parseArgs({ allowPositionals: true, options: { out: { type: 'string' } } });
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: { out: { type: 'string' }, danceformer: { type: 'boolean' } },
+});
 if (!values.out || positionals.length === 0) {
-  console.error('usage: npx tsx export/features.ts --out <folder> <song.wav>...');
+  console.error('usage: npx tsx export/features.ts --out <folder> [--danceformer] <song.wav>...');
   process.exit(2);
 }
 mkdirSync(values.out, { recursive: true });
@@ -23,7 +28,9 @@ for (const path of positionals) {
   const { features, grid } = analyse(mono, pcm.sampleRate);
   const milliseconds = Math.round(performance.now() - begun);
   const target = join(values.out, basename(path, extname(path)));
-  const { data, frames, fps, names } = features;
+  const { frames, fps } = features;
+  const data = values.danceformer ? frameFeatures(features) : features.data;
+  const names = values.danceformer ? beatFeatureNames(features.names) : features.names;
   writeFileSync(`${target}.f32`, new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
   writeFileSync(
     `${target}.json`,

@@ -2,7 +2,8 @@
 import { findGrid, type GridEvidence } from './beats-grid';
 import { cens, chroma, chromaBank, PITCH_CLASSES } from './chroma';
 import { FrameCutter, Rows } from './features-stream';
-import { FLUX_BANDS, FluxMeter, percentile } from './onset';
+import { Cepstrum, MFCC_COUNT, TIMBRE_SIZE } from './mfcc';
+import { FLUX_BANDS, FluxMeter, MEL_BANDS, percentile } from './onset';
 import { Resampler } from './resample';
 import { spec } from './spec';
 import { SpectrumAnalyser } from './spectrum';
@@ -26,6 +27,8 @@ const CHROMA_RATE = spec.features.sampleRate / 4;
 const CHROMA_STEP = 2;
 /** Smoothing of CENS, frames: 0.7 s. */
 const CENS_FRAMES = 21;
+/** Where a row of the flux has the level. */
+const LEVEL = 4;
 /** Share of a song's onsets that lie below strength 1. */
 const ONSET_PERCENTILE = 0.98;
 
@@ -51,6 +54,8 @@ export class FeatureExtractor {
   private readonly flux = new FluxMeter(spec.features.sampleRate, SIZE, FLUX_LAG);
   private readonly chromaRows = new Rows(PITCH_CLASSES);
   private readonly fluxRows = new Rows(FLUX_BANDS);
+  private readonly cepstrum = new Cepstrum(MEL_BANDS);
+  private readonly timbreRows = new Rows(TIMBRE_SIZE);
   private readonly fluxFrames = new FrameCutter(spec.features.sampleRate, SIZE, spec.fps * SUBFRAMES);
   private readonly chromaFrames = new FrameCutter(CHROMA_RATE, SIZE, spec.fps / CHROMA_STEP);
 
@@ -85,7 +90,12 @@ export class FeatureExtractor {
 
   private take(sound: Float32Array): void {
     this.fluxFrames.push(sound, (samples, offset) => {
-      this.flux.next(this.spectrum.analyse(samples, offset), this.fluxRows.add());
+      const row = this.flux.next(this.spectrum.analyse(samples, offset), this.fluxRows.add());
+      if ((this.fluxRows.count - 1) % SUBFRAMES !== 0) return;
+      // The mel bands are there already: the cepstrum costs next to nothing.
+      const timbre = this.timbreRows.add();
+      this.cepstrum.transform(this.flux.decibels, timbre);
+      timbre[MFCC_COUNT] = row[LEVEL];
     });
     this.chromaFrames.push(this.decimator.push(sound), (samples, offset) => {
       chroma(this.bank, this.spectrum.analyse(samples, offset), this.chromaRows.add());
@@ -148,7 +158,8 @@ export class FeatureExtractor {
       data[f * COLUMNS + ONSET] = top > 0 ? Math.min(1, onset[f] / top) : 0;
     }
     const grid = findGrid(evidence);
-    return { features: withGrid({ fps: spec.fps, names: spec.features.names, frames, data }, grid), grid };
+    const timbre = this.timbreRows.data.slice(0, frames * TIMBRE_SIZE);
+    return { features: withGrid({ fps: spec.fps, names: spec.features.names, frames, data, timbre }, grid), grid };
   }
 }
 

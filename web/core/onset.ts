@@ -35,6 +35,8 @@ export function melBank(bands: number, sampleRate: number, size: number): Sparse
   return sparseBank(rows);
 }
 
+/** Mel bands that sound is measured in. */
+export const MEL_BANDS = 128;
 /** Numbers kept per frame: flux of all bands and of the parts that tell kick, snare and cymbals apart, and the level. */
 export const FLUX_BANDS = 5;
 /** Upper edges of the low and middle part, hertz. */
@@ -63,7 +65,7 @@ export class FluxMeter {
     sampleRate: number,
     size: number,
     private readonly lag: number,
-    private readonly bands = 128,
+    private readonly bands = MEL_BANDS,
   ) {
     this.bank = melBank(bands, sampleRate, size);
     this.power = new Float32Array(size / 2);
@@ -73,6 +75,11 @@ export class FluxMeter {
     const perMel = (bands + 1) / hertzToMel(sampleRate / 2);
     this.lowBands = Math.round(hertzToMel(LOW_HERTZ) * perMel);
     this.middleBands = Math.round(hertzToMel(MIDDLE_HERTZ) * perMel);
+  }
+
+  /** Level of each mel band of the spectrum given last, decibels; overwritten by later ones. */
+  get decibels(): Float32Array {
+    return this.history[(this.seen + this.lag - 1) % this.lag];
   }
 
   /**

@@ -26,6 +26,8 @@ export interface Features {
   frames: number;
   /** frames x 15, row-major. */
   data: Float32Array;
+  /** frames x 14: 13 MFCC and the energy in decibels, as they are (mfcc.ts); what key poses are suggested from. */
+  timbre?: Float32Array;
 }
 
 /** Beats of a song. */

@@ -1,6 +1,7 @@
 /** Analyses songs: one job at a time, a chunk per message, so that a cancel is heard between chunks. */
 import { FeatureExtractor } from '../core/features';
 import { spec } from '../core/spec';
+import type { Features } from '../core/types';
 import type { AnalyseReply, AnalyseRequest } from './protocol';
 
 /** Seconds whose features are sent ahead. */
@@ -23,6 +24,8 @@ let current: Job | null = null;
 const reply = (message: AnalyseReply, transfer: Transferable[] = []): void => {
   (self as unknown as DedicatedWorkerGlobalScope).postMessage(message, transfer);
 };
+
+const buffers = ({ data, timbre }: Features): Transferable[] => [data.buffer, ...(timbre ? [timbre.buffer] : [])];
 
 function begin(id: number, sampleRate: number, samples: number): void {
   if (current) reply({ type: 'cancelled', job: current.id });
@@ -53,14 +56,14 @@ function take(job: Job, pcm: Float32Array): void {
   if (!job.isHeadSent && extractor.frames >= HEAD_SECONDS * spec.fps) {
     job.isHeadSent = true;
     const head = extractor.head();
-    reply({ type: 'head', job: id, ...head }, [head.features.data.buffer]);
+    reply({ type: 'head', job: id, ...head }, buffers(head.features));
   }
   if (job.received < job.samples) return;
   current = null;
   const { features, grid, waveform: whole } = extractor.finish();
   const milliseconds = performance.now() - job.begun;
   reply({ type: 'result', job: id, features, grid, waveform: whole, milliseconds }, [
-    features.data.buffer,
+    ...buffers(features),
     whole.min.buffer,
     whole.max.buffer,
   ]);
