@@ -31,7 +31,7 @@ function badDance(frames: number): Motion {
 
 const clean = (input: Motion, keys: number[] = []) => {
   const output = emptyMotion(input.frames);
-  cleanContacts(input, output, 0, input.frames, { keys: keys.map((frame) => ({ frame, strength: 1 })) });
+  cleanContacts(input, output, 0, input.frames, { keys });
   return output;
 };
 const lowest = (motion: Motion) => Math.min(...bodyTrack(motion).ground.map((y, t) => motion.root[t * 3 + 1] - y));

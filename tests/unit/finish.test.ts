@@ -77,6 +77,14 @@ describe('finishing a dance again', () => {
     expect(uncorrected!.motion.quaternions).toEqual(before);
   });
 
+  it('leaves the pose on a key to the strength alone: the clean-up of the feet turns nothing there', async () => {
+    const { uncorrected } = await dance(0);
+    const cleaned = finishDance(uncorrected!, keyPoses, 0);
+    const free = consistencyError(uncorrected!.motion, keyPoses);
+    expect(Math.abs(consistencyError(cleaned, keyPoses) - free)).toBeLessThan(1e-6);
+    expect(apart(cleaned, uncorrected!.motion)).toBeGreaterThan(1e-3);
+  });
+
   it('knows a range made anew too, without a pop at its ends', async () => {
     const whole = await dance(1);
     const range = { from: 240, to: 420 };

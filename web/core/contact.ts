@@ -1,7 +1,8 @@
 /**
  * Foot contact clean-up: the supporting foot stands still, the lowest point rests on the floor unless the dance really jumps, nothing is
- * below the floor, and a key pose at strength 1 keeps every rotation. Works on stretches, so that a dance can be cleaned while the rest of
- * it is generated; frames before the stretch are fixed, and those after it too when a range is made anew.
+ * below the floor, and on a key pose's frame every rotation is kept: the key strength alone says how near the pose comes. Works on
+ * stretches, so that a dance can be cleaned while the rest of it is generated; frames before the stretch are fixed, and those after it too
+ * when a range is made anew.
  */
 import { bodyTrack, SOLES, type BodyTrack } from './contact-body';
 import { liftEnvelope, pelvisHeights } from './contact-floor';
@@ -32,17 +33,10 @@ export interface ContactState {
   feet: FootBorder[];
 }
 
-/** A key pose as the clean-up knows it. */
-export interface FirmKey {
-  frame: number;
-  /** 0..1: at 1 the pose is exact and must stay so. */
-  strength: number;
-}
-
 /** What is known about the keys and the borders. */
 export interface ContactOptions {
-  /** Where the keys are and how firmly each is hit, 0..1: at 1 its pose is left alone. */
-  keys: readonly FirmKey[];
+  /** Frames of the key poses: their rotations are left alone. */
+  keys: readonly number[];
   /** Result of the stretch before; none at the start of a dance. */
   state?: ContactState;
   /** Frames from the end of the stretch on are fixed in `output`. */
@@ -87,9 +81,7 @@ export function cleanContacts(
   copyFrames(input, from, high, work, 0);
   for (let i = 0; i < count; i++) pelvis.set([way.path[i * 2], y[i], way.path[i * 2 + 1]], i * 3);
 
-  const keys = options.keys
-    .filter(({ frame, strength }) => strength > 0 && frame >= from && frame < high)
-    .map(({ frame, strength }) => ({ frame: frame - from, strength }));
+  const keys = options.keys.filter((frame) => frame >= from && frame < high).map((frame) => frame - from);
   const feetAt = plantFeet({ work, track, at, pelvis, keys, state, end });
   raiseAfterLegs(work, pelvis);
   for (let i = 0; i < count * 3; i++) work.root[i] = pelvis[i];
@@ -190,14 +182,13 @@ interface Stretch {
   /** Pelvis positions, frames x 3. */
   pelvis: Float64Array;
   /** Keys inside the stretch that are hit at all, counted from its start. */
-  keys: FirmKey[];
+  keys: readonly number[];
   state?: ContactState;
   end?: ContactState;
 }
 
 /** Plants both feet by moving the legs; returns what the next stretch must know at a frame. */
 function plantFeet({ work, track, at, pelvis, keys, state, end }: Stretch): (frame: number) => FootBorder[] {
-  const exact = keys.map(({ frame }) => frame);
   const paths = [0, 1].map((foot) => {
     const sole = SOLES.findIndex((point) => point.foot === foot && !point.heel);
     const path = new Float64Array(work.frames * 3);
@@ -210,9 +201,9 @@ function plantFeet({ work, track, at, pelvis, keys, state, end }: Stretch): (fra
   const borders = [0, 1].map((foot): FootBorder => state?.feet[foot] ?? { offset: [0, 0, 0] });
   const plants = paths.map((path, foot) => findPlants(path, work.fps, borders[foot].planted !== undefined));
   const offsets = paths.map((path, foot) => {
-    const moved = footOffsets(path, plants[foot], exact, borders[foot], end?.feet[foot]);
+    const moved = footOffsets(path, plants[foot], keys, borders[foot], end?.feet[foot]);
     liftSwing(path, moved, plants[foot], plants[1 - foot], work.fps);
-    for (const { frame, strength } of keys) keepKey(moved, frame, strength);
+    for (const key of keys) keepKey(moved, key);
     return moved;
   });
   for (const foot of [0, 1] as const) {
@@ -233,9 +224,9 @@ function plantFeet({ work, track, at, pelvis, keys, state, end }: Stretch): (fra
 }
 
 /** Fades the legs' offsets out around a key, so that its pose is left alone. */
-function keepKey(offsets: Float64Array, key: number, keyStrength: number): void {
+function keepKey(offsets: Float64Array, key: number): void {
   for (let i = Math.max(0, key - KEY_REACH); i < Math.min(offsets.length / 3, key + KEY_REACH); i++) {
-    const keep = 1 - keyStrength * bump((i - key) / KEY_REACH);
+    const keep = 1 - bump((i - key) / KEY_REACH);
     for (let k = 0; k < 3; k++) offsets[i * 3 + k] *= keep;
   }
 }

@@ -2,8 +2,8 @@
  * The last step of a dance, apart from the network: through the key poses as firmly as the dial says, and feet on the floor. A dance that
  * keeps its uncorrected form can be finished again for another strength in no time.
  */
-import { cleanContacts, LOOKAHEAD, type ContactState, type FirmKey } from './contact';
-import { correctToKeys, effectiveStrength, keysOnFrames, type FrameKey } from './correction';
+import { cleanContacts, LOOKAHEAD, type ContactState } from './contact';
+import { correctToKeys, keysOnFrames, type FrameKey } from './correction';
 import { heldAround, keysWithin, type FrameRange } from './excerpt';
 import { alignSigns, copyFrames, emptyMotion, sliceMotion } from './motion';
 import { withLayer, type RangeLayer } from './range-layer';
@@ -27,7 +27,8 @@ export interface UncorrectedDance {
 
 /** How the feet are cleaned. */
 export interface CleaningOptions {
-  keys: readonly FirmKey[];
+  /** Frames of the key poses. */
+  keys: readonly number[];
   cleanFeet: boolean;
 }
 
@@ -43,11 +44,6 @@ export interface Cleaner {
   readonly done: number;
   /** A copy of all that is cleaned so far. */
   result(): Motion;
-}
-
-/** Keys as the clean-up knows them. */
-export function firmKeys(keys: readonly FrameKey[], strength: number): FirmKey[] {
-  return keys.map((key) => ({ frame: key.frame, strength: effectiveStrength(strength, key.strength) }));
 }
 
 /** @param frames length of the whole dance */
@@ -90,7 +86,7 @@ export function finishDance(
   const keys = keysOnFrames(inside, fps, frames);
   const corrected = sliceMotion(motion, 0, frames);
   correctToKeys(corrected, keys, strength);
-  const cleaner = createCleaner(frames, { keys: firmKeys(keys, strength), cleanFeet });
+  const cleaner = createCleaner(frames, { keys: keys.map((key) => key.frame), cleanFeet });
   for (const stable of stretches) cleaner.clean(corrected, stable, false);
   cleaner.clean(corrected, frames, true);
   const whole = cleaner.result();
@@ -117,7 +113,7 @@ export function finishLayer(
   const output = sliceMotion(below, 0, below.frames);
   if (cleanFeet) {
     const fixedAfter = to < below.frames;
-    cleanContacts(made, output, from, to, { keys: firmKeys(inside, strength), fixedAfter });
+    cleanContacts(made, output, from, to, { keys: inside.map((key) => key.frame), fixedAfter });
   } else {
     copyFrames(made, from, to, output, from);
   }

@@ -6,7 +6,7 @@ import { accentBeats } from './accent';
 import { beatPhase, type BeatPhase } from './beat-phase';
 import { correctToKeys, keysOnFrames, type FrameKey } from './correction';
 import { excerpt, heldAround } from './excerpt';
-import { createCleaner, finishDance, finishLayer, firmKeys, flattened, SETTLE, type UncorrectedDance } from './finish';
+import { createCleaner, finishDance, finishLayer, flattened, SETTLE, type UncorrectedDance } from './finish';
 import { headingCurve } from './filler';
 import { headingOf } from './localframe';
 import { copyFrames, emptyMotion, sliceMotion } from './motion';
@@ -191,7 +191,7 @@ function finisher(request: GenerationRequest, keys: FrameKey[]): Finisher {
   const uncorrected: Finisher['uncorrected'] = { motion: emptyMotion(frames), stretches: [] };
   const corrected = emptyMotion(frames);
   const phase = beatPhase(request.grid);
-  const cleaner = createCleaner(frames, { cleanFeet: options.cleanFeet, keys: firmKeys(keys, options.keyStrength) });
+  const cleaner = createCleaner(frames, { cleanFeet: options.cleanFeet, keys: keys.map((key) => key.frame) });
   const finish = (raw: Motion, stable: number, last: boolean): Motion => {
     const into = { uncorrected: uncorrected.motion, corrected };
     correctStretch(raw, into, cleaner.done, last ? frames : stable, keys, phase, options.keyStrength);
