@@ -37,6 +37,30 @@ export interface Spec {
     readonly motionSize: number;
     readonly motionOrder: string;
   };
+  /** DanceFormer: what its two networks hear, and how their windows and curves are cut. */
+  readonly danceformer: {
+    /** Music per frame. */
+    readonly featureNames: readonly string[];
+    /** What stands behind those in the music of a beat. */
+    readonly beatExtraNames: readonly string[];
+    /** Width of the Hamming window around a beat. */
+    readonly beatWindowSeconds: number;
+    /** Frames on either side of a beat in which its loudest onset is looked for. */
+    readonly onsetPeakFrames: number;
+    readonly styles: readonly string[];
+    readonly suggest: {
+      readonly pastPoses: number;
+      readonly pastBeats: number;
+      readonly futureBeats: number;
+      readonly codes: number;
+      readonly farthestFixedBeats: number;
+    };
+    readonly curve: {
+      readonly intervalSteps: number;
+      readonly innerFractions: readonly [number, number];
+      readonly values: readonly string[];
+    };
+  };
 }
 
 export const spec: Spec = json as unknown as Spec;
