@@ -65,10 +65,14 @@ describe('the model store', () => {
     expect(asked).not.toContain('light.onnx');
   });
 
-  it('lets go of an older model', async () => {
+  it('lets go of an older form of the same model, not of another one', async () => {
     kept.set(`${folder}light.onnx?old`, new Uint8Array(3));
+    kept.set(`${folder}suggest.onnx?kept`, new Uint8Array(3));
     await loadModel(folder, () => undefined);
-    expect([...kept.keys()].filter((url) => url.includes('.onnx'))).toHaveLength(1);
+    const models = [...kept.keys()].filter((url) => url.includes('.onnx'));
+    expect(models).toHaveLength(2);
+    expect(models).toContain(`${folder}suggest.onnx?kept`);
+    expect(models).not.toContain(`${folder}light.onnx?old`);
   });
 
   it('works without a cache, and without a network once it has one', async () => {

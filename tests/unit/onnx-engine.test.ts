@@ -21,6 +21,8 @@ vi.mock('../../web/workers/onnx-session', () => ({
   goldenError: async ({ backend }: { backend: string }) => (backend === 'webgpu' && wrongOnGpu ? 0.1 : 1e-6),
 }));
 vi.mock('../../web/workers/model-store', () => ({
+  DANCE_MODEL: {},
+  parseGoldenRun: () => ({}),
   loadModel: async () => ({
     manifest: { name: 'light', precision: 'q8', specHash },
     weights: new Uint8Array(1),

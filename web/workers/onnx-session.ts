@@ -1,8 +1,8 @@
-/** A model on one backend: creating it, running a window, checking it against the golden window. */
-import type { InferenceSession } from 'onnxruntime-web';
+/** The dance model on one backend: running a window, checking it against the golden window. */
 import { spec } from '../core/spec';
 import type { WindowInputs } from '../core/windows';
 import type { GoldenWindow } from './model-store';
+import { openNetwork, type Feeds } from './onnx-network';
 import type { OrtModule } from './onnx-runtime';
 import type { Backend } from './protocol';
 
@@ -19,55 +19,24 @@ export interface DanceSession {
 
 /** Creates a session; the weights are copied by onnxruntime and can be used again. */
 export async function openSession(ort: OrtModule, backend: Backend, weights: Uint8Array): Promise<DanceSession> {
-  const session = await ort.InferenceSession.create(weights, {
-    executionProviders: [backend],
-    graphOptimizationLevel: 'all',
-    // Windows differ in length: planning memory for one pattern only costs time.
-    enableMemPattern: false,
-    logSeverityLevel: 3,
-  });
-  let lost: string | undefined;
-  if (backend === 'webgpu') void watchDevice(ort, (reason) => (lost = reason));
+  const network = await openNetwork(ort, backend, weights);
   return {
     backend,
-    async run(inputs) {
-      if (lost) throw new Error(`The graphics processor was lost (${lost}).`);
-      const motion = await runSession(ort, session, inputs);
-      if (lost) throw new Error(`The graphics processor was lost (${lost}).`);
-      if (!motion.every(Number.isFinite)) throw new Error('The model gave numbers that are not finite.');
-      return motion;
-    },
-    close: () => session.release(),
+    run: async (inputs) => (await network.run(windowFeeds(inputs))).motion,
+    close: () => network.close(),
   };
 }
 
-interface Device {
-  lost: Promise<{ reason?: string; message?: string }>;
-}
-
-async function watchDevice(ort: OrtModule, onLost: (reason: string) => void): Promise<void> {
-  try {
-    const device = (await ort.env.webgpu.device) as unknown as Device;
-    const { reason, message } = await device.lost;
-    onLost(message || reason || 'unknown reason');
-  } catch {
-    // A build that does not show its device still rejects the run that fails.
-  }
-}
-
-async function runSession(ort: OrtModule, session: InferenceSession, inputs: WindowInputs): Promise<Float32Array> {
-  const { frames, seedFrames } = inputs;
+function windowFeeds({ frames, seedFrames, ...inputs }: WindowInputs): Feeds {
   const { motionSize, rotationSize } = spec.model;
-  const tensor = (data: Float32Array, ...dims: number[]) => new ort.Tensor('float32', data, [1, ...dims]);
-  const output = await session.run({
-    music: tensor(inputs.music, frames, spec.features.names.length),
-    seed: tensor(inputs.seed, seedFrames, motionSize),
-    key_poses: tensor(inputs.keyPoses, frames, rotationSize),
-    key_mask: tensor(inputs.keyMask, frames),
-    to_previous: tensor(inputs.toPrevious, frames),
-    to_next: tensor(inputs.toNext, frames),
-  });
-  return Float32Array.from((await output.motion.getData()) as Float32Array);
+  return {
+    music: { data: inputs.music, dims: [1, frames, spec.features.names.length] },
+    seed: { data: inputs.seed, dims: [1, seedFrames, motionSize] },
+    key_poses: { data: inputs.keyPoses, dims: [1, frames, rotationSize] },
+    key_mask: { data: inputs.keyMask, dims: [1, frames] },
+    to_previous: { data: inputs.toPrevious, dims: [1, frames] },
+    to_next: { data: inputs.toNext, dims: [1, frames] },
+  };
 }
 
 /** Largest difference between a session's output and the golden window's. */
