@@ -114,31 +114,43 @@ export function shapeAt({ shape }: CurveDance, interval: number, channel: number
 }
 
 /**
- * The knots of one channel with their velocities. An interval's tension, continuity and bias rule its inner knots, the way out of its
- * first key knot and the way into its last; at the two ends of a dance the velocity is that of the straight line, slackened by tension.
+ * The knots of one channel with their velocities. An interval's tension, continuity and bias rule its inner knots; at a key pose between
+ * two intervals it is the mean of both, so that without a break of continuity the velocity runs on through it. At the two ends of a
+ * dance the velocity is that of the straight line, slackened by tension.
  */
 export function knotTrack(curves: CurveDance, channel: number, times: Float64Array = knotTimes(curves)): KnotTrack {
   const values = knotValues(curves, channel);
   const count = values.length;
   const arriving = new Float64Array(count);
   const leaving = new Float64Array(count);
-  const intervals = curves.times.length - 1;
-  for (let i = 0; i < count && intervals > 0; i++) {
-    const interval = Math.floor(i / (INNER_KNOTS + 1));
-    const isKey = i % (INNER_KNOTS + 1) === 0;
-    const inShape = shapeAt(curves, isKey && i > 0 ? interval - 1 : interval, channel);
-    const outShape = i + 1 === count ? inShape : shapeAt(curves, interval, channel);
+  for (let i = 0; i < count && count > 1; i++) {
+    const shape = shapeOfKnot(curves, i, channel);
     const before = i > 0 ? values[i] - values[i - 1] : 0;
     const after = i + 1 < count ? values[i + 1] - values[i] : 0;
-    if (i === 0) leaving[i] = ((1 - outShape.tension) * after) / (times[1] - times[0]);
-    else if (i + 1 === count) arriving[i] = ((1 - inShape.tension) * before) / (times[i] - times[i - 1]);
+    if (i === 0) leaving[i] = ((1 - shape.tension) * after) / (times[1] - times[0]);
+    else if (i + 1 === count) arriving[i] = ((1 - shape.tension) * before) / (times[i] - times[i - 1]);
     else {
       const span = times[i + 1] - times[i - 1];
-      arriving[i] = inVelocity(before, after, span, inShape);
-      leaving[i] = outVelocity(before, after, span, outShape);
+      arriving[i] = inVelocity(before, after, span, shape);
+      leaving[i] = outVelocity(before, after, span, shape);
     }
   }
   return { times, values, arriving, leaving };
+}
+
+/** Tension, continuity and bias at a knot, counted as in {@link knotTimes}. */
+function shapeOfKnot(curves: CurveDance, knot: number, channel: number): Shape {
+  const stride = INNER_KNOTS + 1;
+  const last = curves.times.length - 2;
+  const interval = Math.floor(knot / stride);
+  if (knot % stride > 0 || interval === 0) return shapeAt(curves, interval, channel);
+  if (interval > last) return shapeAt(curves, last, channel);
+  const [a, b] = [shapeAt(curves, interval - 1, channel), shapeAt(curves, interval, channel)];
+  return {
+    tension: (a.tension + b.tension) / 2,
+    continuity: (a.continuity + b.continuity) / 2,
+    bias: (a.bias + b.bias) / 2,
+  };
 }
 
 /** The largest knot at or before a time, but never the last one; -1 before the first. */

@@ -4,6 +4,7 @@ import {
   DEFAULT_AVATAR,
   DEFAULT_DIALS,
   DOCUMENT_VERSION,
+  MAX_CURVE_EDITS,
   MAX_KEY_POSES,
   MAX_RANGES,
   nextKeyId,
@@ -14,13 +15,16 @@ import {
 } from './document';
 import {
   cameraSchema,
+  curveEditSchema,
   dialSchemas,
+  engineSchema,
   gridSchema,
   keyPoseSchema,
   songSchema,
   takeRangeSchema,
   timeRangeSchema,
 } from './document-schema';
+import { withEdit, type CurveEdit } from './curves-edit';
 import type { BeatGrid, KeyPose } from './types';
 
 /** Beats closer than this, seconds, are no beats of a person: some 6000 a minute. */
@@ -58,11 +62,27 @@ export function parseDocument(input: unknown): { document: ProjectDocument; repa
       keyPoses: repairKeys(raw.keyPoses, duration, repairs),
       ranges: repairRanges(raw.ranges, duration, repairs),
       dials: repairDials(raw.dials, repairs),
+      ...curvePart(raw, repairs),
       avatar: repairAvatar(raw.avatar, repairs),
       camera: repairPart(cameraSchema, raw.camera, 'The camera was damaged: the opening view is shown.', repairs),
     },
     repairs,
   };
+}
+
+/** The engine and the edited curves; projects without them stay without. */
+function curvePart(raw: Record<string, unknown>, repairs: string[]): Pick<ProjectDocument, 'engine' | 'curveEdits'> {
+  const engine = repairPart(engineSchema, raw.engine, 'The engine was damaged: network frames are used.', repairs);
+  const list: unknown[] = Array.isArray(raw.curveEdits) ? raw.curveEdits : [];
+  let edits: readonly CurveEdit[] = [];
+  for (const entry of list.slice(0, MAX_CURVE_EDITS)) {
+    const parsed = v.safeParse(curveEditSchema, entry);
+    if (parsed.success) edits = withEdit(edits, parsed.output);
+  }
+  if (edits.length < list.length || (raw.curveEdits !== undefined && !Array.isArray(raw.curveEdits))) {
+    repairs.push('Some changes to the curves were damaged and left out.');
+  }
+  return { ...(engine ? { engine } : {}), ...(edits.length > 0 ? { curveEdits: edits } : {}) };
 }
 
 function repairAvatar(value: unknown, repairs: string[]): string {

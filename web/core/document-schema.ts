@@ -80,3 +80,19 @@ export const cameraSchema = v.object({
   position: v.tuple([place, place, place]),
   target: v.tuple([place, place, place]),
 });
+/** What makes a dance. */
+export const engineSchema = v.picklist(['light', 'curves']);
+const anchor = v.union([id, v.pipe(v.number(), v.minValue(-100_000), v.maxValue(100_000))]);
+const signed = v.optional(v.pipe(v.number(), v.minValue(-1), v.maxValue(1)));
+const amount = v.pipe(v.number(), v.minValue(-100), v.maxValue(100));
+const triple = v.tuple([amount, amount, amount]);
+/** A change to one curve; turns in radians, ways in metres. */
+export const curveEditSchema = v.object({
+  from: anchor,
+  to: anchor,
+  track: v.picklist(['root', ...spec.skeleton.joints]),
+  knots: v.optional(v.tuple([triple, triple])),
+  tension: signed,
+  continuity: signed,
+  bias: signed,
+});

@@ -1,5 +1,6 @@
 /** The project document: what a visitor made, as plain JSON. The song's sound and the dance itself are not part of it. */
 import * as v from 'valibot';
+import type { CurveEdit } from './curves-edit';
 import { rotationsSchema, unit } from './document-schema';
 import { FIRST_TAKE } from './filler';
 import spec from './spec.json';
@@ -54,6 +55,9 @@ export interface TakeRange extends TimeRange {
   chosen: string | null;
 }
 
+/** What makes a dance: `light` gives frames, `curves` gives curves between key poses that can be edited. */
+export type EngineName = 'light' | 'curves';
+
 /** Where the visitor looks from, metres; while the camera follows, x and z are counted from the dancer. */
 export interface CameraView {
   /** The camera goes along with the dancer. */
@@ -75,6 +79,10 @@ export interface ProjectDocument {
   keyPoses: KeyPose[];
   ranges: TakeRange[];
   dials: Dials;
+  /** Missing = light. */
+  engine?: EngineName;
+  /** Changes to the curves of the engine `curves`. */
+  curveEdits?: readonly CurveEdit[];
   /** Id of the figure that dances. */
   avatar: string;
   /** null = the opening view. Not part of undo: `History.amend`. */
@@ -89,6 +97,8 @@ export const DEFAULT_AVATAR = 'posebeat';
 export const MAX_RANGES = 200;
 /** More key poses than this is no project of a person. */
 export const MAX_KEY_POSES = 5000;
+/** More edited curves than this is no project of a person. */
+export const MAX_CURVE_EDITS = 5000;
 
 /** The dials of a new project: exact keys, a little life. */
 export const DEFAULT_DIALS: Readonly<Dials> = { keyStrength: 1, ...FIRST_TAKE, seedClip: '' };
