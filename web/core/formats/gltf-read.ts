@@ -198,7 +198,8 @@ function sample(
   const start = Math.min(...tracks.map(({ times }) => times[0]));
   const length = Math.max(...tracks.map(({ times }) => times[times.length - 1])) - start;
   const fps = Math.min(spec.fps, length > 0 ? (MAX_FRAMES - 1) / length : spec.fps);
-  const frames = Math.floor(Math.max(0, length) * fps + 1e-6) + 1;
+  // Times are 32-bit: ten minutes in, they are off by a thousandth of a frame.
+  const frames = Math.floor(Math.max(0, length) * fps + 0.01) + 1;
   const quaternions = new Float32Array(frames * JOINT_COUNT * 4);
   const local = [...tree.rotations];
   for (let frame = 0; frame < frames; frame++) {

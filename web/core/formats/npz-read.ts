@@ -22,6 +22,8 @@ interface Source {
   fps: number;
   /** The way up that such files have. */
   up: [number, number, number];
+  /** Nothing that is seen in the motion tells otherwise: the file names both conventions, as Posebeat's own do. */
+  sure?: true;
 }
 
 /**
@@ -47,11 +49,11 @@ export function readNpz(bytes: Uint8Array): PoseClips {
     }
     return readNpy(content, key);
   };
-  const { poses, fps, up } = findPoses(array, entries);
+  const { poses, fps, up, sure } = findPoses(array, entries);
   const rate = RATES.map(array).find((each) => each?.data.length === 1)?.data[0] ?? fps;
   if (!(rate > 0 && rate < 10_000)) throw new Error('The npz file’s frames per second make no sense.');
   const clip = toSequence(poses, rate);
-  const seen = axisOf(meanUp(clip), UPRIGHT);
+  const seen = sure ? null : axisOf(meanUp(clip), UPRIGHT);
   // What is seen decides between the two conventions; a body that lies is no reason to believe in a third.
   turnUpright(clip, seen && (seen[1] === 1 || seen[2] === 1) ? seen : up);
   return { kind: 'SMPL', clips: [clip] };
@@ -59,7 +61,10 @@ export function readNpz(bytes: Uint8Array): PoseClips {
 
 function findPoses(array: (key: string) => NumberArray | null, entries: readonly ZipEntry[]): Source {
   const aist = array('smpl_poses');
-  if (aist) return { poses: aist, fps: 60, up: [0, 1, 0] };
+  if (aist) {
+    const both = entries.some(({ name }) => name === 'poses.npy');
+    return { poses: aist, fps: 60, up: [0, 1, 0], ...(both ? { sure: true } : {}) };
+  }
   const amass = array('poses');
   if (amass) return { poses: amass, fps: 30, up: [0, 0, 1] };
   const [root, body] = [array('root_orient'), array('pose_body')];
