@@ -8,8 +8,9 @@
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { basename, extname, join } from 'node:path';
 import { parseArgs } from 'node:util';
-import { beatFeatureNames, frameFeatures } from '../web/core/beat-features';
+import { frameFeatures } from '../web/core/beat-features';
 import { analyse } from '../web/core/features';
+import { spec } from '../web/core/spec';
 import { decodeWav, mixToMono } from '../web/core/wav';
 
 const { values, positionals } = parseArgs({
@@ -30,7 +31,7 @@ for (const path of positionals) {
   const target = join(values.out, basename(path, extname(path)));
   const { frames, fps } = features;
   const data = values.danceformer ? frameFeatures(features) : features.data;
-  const names = values.danceformer ? beatFeatureNames(features.names) : features.names;
+  const names = values.danceformer ? spec.danceformer.featureNames : features.names;
   writeFileSync(`${target}.f32`, new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
   writeFileSync(
     `${target}.json`,

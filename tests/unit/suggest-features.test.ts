@@ -1,5 +1,11 @@
 import { describe, expect, it } from 'vitest';
-import { aroundBeat, BEAT_FEATURE_SIZE, beatFeatureNames, frameFeatures } from '../../web/core/beat-features';
+import {
+  aroundBeat,
+  BEAT_MUSIC_SIZE,
+  beatMusic,
+  FRAME_FEATURE_SIZE,
+  frameFeatures,
+} from '../../web/core/beat-features';
 import { analyse } from '../../web/core/features';
 import { deltas, MFCC_COUNT, TIMBRE_SIZE } from '../../web/core/mfcc';
 import { spec } from '../../web/core/spec';
@@ -64,16 +70,15 @@ describe('frameFeatures', () => {
     const { pcm } = band(120, 4, 4, RATE, 2);
     const { features } = analyse(pcm, RATE);
     const rows = frameFeatures(features);
-    const names = beatFeatureNames(features.names);
-    expect(names).toHaveLength(BEAT_FEATURE_SIZE);
-    expect(rows).toHaveLength(features.frames * BEAT_FEATURE_SIZE);
+    const names = spec.danceformer.featureNames;
+    expect(rows).toHaveLength(features.frames * FRAME_FEATURE_SIZE);
     const sounding = Array.from({ length: features.frames }, (_, f) => f).filter(
-      (f) => rows[f * BEAT_FEATURE_SIZE + names.indexOf('energy')] !== 0,
+      (f) => rows[f * FRAME_FEATURE_SIZE + names.indexOf('energy')] !== 0,
     );
     // Two seconds of silence come first.
     expect(sounding[0]).toBeGreaterThan(56);
     for (const name of ['mfcc_0', 'mfcc_5', 'mfcc_delta_1', 'mfcc_delta2_12', 'energy']) {
-      const column = sounding.map((f) => rows[f * BEAT_FEATURE_SIZE + names.indexOf(name)]);
+      const column = sounding.map((f) => rows[f * FRAME_FEATURE_SIZE + names.indexOf(name)]);
       const mean = column.reduce((a, b) => a + b, 0) / column.length;
       const variance = column.reduce((a, b) => a + (b - mean) ** 2, 0) / column.length;
       expect(Math.abs(mean)).toBeLessThan(0.05);
@@ -86,7 +91,7 @@ describe('frameFeatures', () => {
       ['onset', 14],
     ] as const) {
       for (const f of [0, 70, 200])
-        expect(rows[f * BEAT_FEATURE_SIZE + names.indexOf(name)]).toBe(features.data[f * 15 + source]);
+        expect(rows[f * FRAME_FEATURE_SIZE + names.indexOf(name)]).toBe(features.data[f * 15 + source]);
     }
   });
 
@@ -139,5 +144,47 @@ describe('aroundBeat', () => {
     }
     aroundBeat(flat, 1, 30, 9, out);
     expect(out[0]).toBe(0);
+  });
+});
+
+describe('beatMusic', () => {
+  const { pcm } = band(120, 4, 4);
+  const { features } = analyse(pcm, RATE);
+  const beats = Array.from({ length: 12 }, (_, i) => 0.5 * i);
+  const grid = { tempo: 120, beatsPerBar: 4 as const, beats, downbeats: [0.5, 2.5, 4.5] };
+  const rows = beatMusic(features, grid);
+  const extra = (beat: number, index: number) => rows[beat * BEAT_MUSIC_SIZE + FRAME_FEATURE_SIZE + index];
+
+  it('begins with what is heard around the beat', () => {
+    expect(rows).toHaveLength(12 * BEAT_MUSIC_SIZE);
+    const around = new Float32Array(FRAME_FEATURE_SIZE);
+    aroundBeat(frameFeatures(features), FRAME_FEATURE_SIZE, 30, beats[3], around);
+    expect(rows.slice(3 * BEAT_MUSIC_SIZE, 3 * BEAT_MUSIC_SIZE + FRAME_FEATURE_SIZE)).toEqual(around);
+  });
+
+  it('tells the loudest onset near the beat', () => {
+    const middle = Math.round(beats[4] * 30);
+    const near = [-2, -1, 0, 1, 2].map((d) => features.data[(middle + d) * 15 + 14]);
+    expect(extra(4, 0)).toBe(Math.max(...near));
+    expect(Math.max(...near)).toBeGreaterThan(features.data[(middle - 3) * 15 + 14]);
+  });
+
+  it('tells the place in the bar, counted back before the first bar line, and the length of the beat', () => {
+    // Beat 0 is the fourth of its bar, beat 1 begins one, beat 2 is the second.
+    for (const [beat, sine, cosine] of [
+      [0, -1, 0],
+      [1, 0, 1],
+      [2, 1, 0],
+      [3, 0, -1],
+      [5, 0, 1],
+    ]) {
+      expect(extra(beat, 1)).toBeCloseTo(sine, 6);
+      expect(extra(beat, 2)).toBeCloseTo(cosine, 6);
+    }
+    expect(extra(2, 3)).toBeCloseTo(0, 6);
+    const slow = beatMusic(features, { ...grid, beats: [0, 1, 1.5], downbeats: [] });
+    const at = (beat: number, index: number) => slow[beat * BEAT_MUSIC_SIZE + FRAME_FEATURE_SIZE + index];
+    expect([at(0, 3), at(1, 3), at(2, 3)]).toEqual([1, 0, 0]);
+    expect([at(1, 1), at(1, 2)]).toEqual([0, 0]);
   });
 });
