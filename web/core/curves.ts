@@ -139,7 +139,7 @@ export function knotTrack(curves: CurveDance, channel: number, times: Float64Arr
 }
 
 /** Tension, continuity and bias at a knot, counted as in {@link knotTimes}. */
-function shapeOfKnot(curves: CurveDance, knot: number, channel: number): Shape {
+export function shapeOfKnot(curves: CurveDance, knot: number, channel: number): Shape {
   const stride = INNER_KNOTS + 1;
   const last = curves.times.length - 2;
   const interval = Math.floor(knot / stride);
