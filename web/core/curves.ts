@@ -6,12 +6,15 @@
 import { hermite } from './interpolate';
 import { emptyMotion } from './motion';
 import { JOINT_COUNT } from './skeleton';
+import { spec } from './spec';
 import type { Motion } from './types';
+
+const { innerFractions } = spec.danceformer.curve;
 
 /** Numbers of a pose on the curves: root x y z (metres), then 24 quaternions x y z w. */
 export const CHANNELS = 3 + JOINT_COUNT * 4;
 /** Knots between two key poses. */
-export const INNER_KNOTS = 2;
+export const INNER_KNOTS = innerFractions.length;
 /** Tension, continuity, bias. */
 export const SHAPE_SIZE = 3;
 
@@ -266,7 +269,7 @@ export function emptyCurves(
   for (const list of [keys, inner]) {
     for (let i = 6; i < list.length; i += i % CHANNELS === CHANNELS - 1 ? 7 : 4) list[i] = 1;
   }
-  const shares = Float32Array.from({ length: intervals * INNER_KNOTS }, (_, i) => ((i % INNER_KNOTS) + 1) / 3);
+  const shares = Float32Array.from({ length: intervals * INNER_KNOTS }, (_, i) => innerFractions[i % INNER_KNOTS]);
   const shape = new Float32Array(intervals * SHAPE_SIZE * CHANNELS);
   return { duration, times: Float64Array.from(times), anchors: [...anchors], keys, inner, shares, shape };
 }

@@ -66,6 +66,8 @@ export interface FillerRequest {
   /** 0 = the clip in its own order .. 1 = bars shuffled, mirrored, larger and smaller, and borrowed. */
   variation: number;
   seed: number;
+  /** Gaps up to this long between two keys get none but for the sake of variation, seconds; by default LONGEST_GAP. */
+  longestGap?: number;
 }
 
 /**
@@ -113,7 +115,7 @@ export function fillerPoses(request: FillerRequest, heading: (frame: number) => 
   const fillers: FrameKey[] = [];
   for (let i = 0; i + 1 < borders.length; i++) {
     const [left, right] = [borders[i], borders[i + 1]];
-    if (right - left <= LONGEST_GAP * fps && i + 2 < borders.length) {
+    if (right - left <= (request.longestGap ?? LONGEST_GAP) * fps && i + 2 < borders.length) {
       const detour = i > 0 && detourPose(request, phase, dancer, heading, left, right);
       if (detour) fillers.push(detour);
       continue;
