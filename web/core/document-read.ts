@@ -202,7 +202,7 @@ function withoutBadExtras(entry: unknown): unknown {
   if (typeof entry !== 'object' || entry === null) return entry;
   const { entries } = keyPoseSchema;
   const raw = entry as Record<string, unknown>;
-  const bad = (['name', 'locked', 'strength'] as const).filter(
+  const bad = (['name', 'locked', 'strength', 'suggested'] as const).filter(
     (name) => Object.hasOwn(raw, name) && !v.is(entries[name], raw[name]),
   );
   if (bad.length === 0) return entry;

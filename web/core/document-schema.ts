@@ -30,6 +30,7 @@ export const keyPoseSchema = v.object({
   name: v.optional(v.pipe(v.string(), v.maxLength(200))),
   locked: v.optional(v.literal(true)),
   strength: v.optional(unit),
+  suggested: v.optional(v.literal(true)),
 });
 /** A beat grid, its order unchecked. */
 export const gridSchema = v.object({

@@ -156,7 +156,7 @@ export function checkKeyPoses(input: unknown, duration: number): KeyPose[] {
   input.forEach((entry: unknown, index) => {
     const where = `Key pose ${index + 1}`;
     if (typeof entry !== 'object' || entry === null) throw new Error(`${where} must be an object {time, rotations}.`);
-    const { time, rotations, name, id, locked, strength } = entry as Record<string, unknown>;
+    const { time, rotations, name, id, locked, strength, suggested } = entry as Record<string, unknown>;
     if (typeof time !== 'number' || !Number.isFinite(time))
       throw new Error(`${where}: time must be a number of seconds.`);
     if (time < 0 || time > duration) {
@@ -174,6 +174,7 @@ export function checkKeyPoses(input: unknown, duration: number): KeyPose[] {
     taken.add(own);
     const key: KeyPose = { id: own, time, rotations: [...parsed.output] };
     if (locked === true) key.locked = true;
+    if (suggested === true) key.suggested = true;
     if (strength !== undefined) {
       if (!v.is(unit, strength)) throw new Error(`${where}: strength must be a number from 0 to 1.`);
       key.strength = strength;

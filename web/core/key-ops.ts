@@ -179,13 +179,22 @@ export function deleteKeys(keys: Keys, ids: Ids): Keys {
   return left.length === keys.length ? keys : left;
 }
 
-/** Changes key poses that are not locked, in place. */
+/** A key pose that the visitor has had a hand in: no longer a mere suggestion. */
+export function asOwn(key: KeyPose): KeyPose {
+  if (!key.suggested) return key;
+  const own = { ...key };
+  delete own.suggested;
+  return own;
+}
+
+/** Changes key poses that are not locked, in place; they are the visitor's own then. */
 export function editKeys(keys: Keys, ids: Ids, edit: (key: KeyPose) => KeyPose): Keys {
   let changed = false;
   const next = keys.map((key) => {
     const edited = ids.has(key.id) && !key.locked ? edit(key) : key;
-    changed ||= edited !== key;
-    return edited;
+    if (edited === key) return key;
+    changed = true;
+    return asOwn(edited);
   });
   return changed ? next : keys;
 }
@@ -208,14 +217,15 @@ export function toggleLock(keys: Keys, ids: Ids): Keys {
   const next = keys.map((key) => {
     if (!ids.has(key.id) || (key.locked ?? false) === lock) return key;
     changed = true;
-    const edited: KeyPose = { ...key, locked: true };
+    const edited: KeyPose = { ...asOwn(key), locked: true };
     if (!lock) delete edited.locked;
     return edited;
   });
   return changed ? next : keys;
 }
 
-const placedAt = (keys: Keys, times: readonly number[]): Keys => keys.map((key, i) => ({ ...key, time: times[i] }));
+const placedAt = (keys: Keys, times: readonly number[]): Keys =>
+  keys.map((key, i) => ({ ...asOwn(key), time: times[i] }));
 
 function moveTo(keys: Keys, moved: Keys, times: readonly number[], duration: number): Keys {
   if (times.every((time, i) => time === moved[i].time)) return keys;
@@ -246,7 +256,7 @@ function addCopies(keys: Keys, copies: Keys, duration: number): Added {
   if (copies.length === 0) return { keys, added: [], left: 0 };
   const number = Number(nextKeyId(keys).slice(1));
   const placed = copies.map((key, i) => {
-    const copy: KeyPose = { ...key, id: `k${number + i}` };
+    const copy: KeyPose = { ...asOwn(key), id: `k${number + i}` };
     delete copy.locked;
     return copy;
   });

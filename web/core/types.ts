@@ -53,6 +53,8 @@ export interface KeyPose {
   locked?: true;
   /** 0..1, times the dial's key strength; missing = 1. */
   strength?: number;
+  /** Suggested, and not touched by the visitor since: the next suggestion may put another in its place. */
+  suggested?: true;
 }
 
 /** Lowest and highest sample of each bucket of a song, for drawing it. */

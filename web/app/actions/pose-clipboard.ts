@@ -1,4 +1,5 @@
 /** Copying poses and limbs, across key poses. */
+import { asOwn } from '../../core/key-ops';
 import { copyLimb, limbOf, LIMBS, OTHER_SIDE, type Limb } from '../../core/pose-tools';
 import type { Context } from '../context';
 import { limbLabel } from '../limb-labels';
@@ -67,7 +68,9 @@ export function poseClipboardActions(context: Context, desk: PoseDesk, math: Pos
       context.change('Paste pose', (document) => ({
         ...document,
         keyPoses: document.keyPoses.map((key) =>
-          ids.has(key.id) ? { ...key, rotations: withinTools(context, math, pasted(key.rotations)).rotations } : key,
+          ids.has(key.id)
+            ? { ...asOwn(key), rotations: withinTools(context, math, pasted(key.rotations)).rotations }
+            : key,
         ),
       }));
       context.announce(`Pasted onto ${ids.size} key pose${ids.size === 1 ? '' : 's'}.`);

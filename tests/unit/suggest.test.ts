@@ -1,0 +1,280 @@
+import { describe, expect, it } from 'vitest';
+import { checkKeyPoses, createDocument } from '../../web/core/document';
+import { parseDocument } from '../../web/core/document-read';
+import { setStrength, settleKeys, shiftKeys, toggleLock, editKeys } from '../../web/core/key-ops';
+import { withinLimits } from '../../web/core/joint-limits';
+import { axisAngleToQuaternion, poseToQuaternions, quaternionsToSixD } from '../../web/core/rotation';
+import { jointIndex } from '../../web/core/skeleton';
+import { spec } from '../../web/core/spec';
+import { TIMBRE_SIZE } from '../../web/core/mfcc';
+import {
+  ALTERNATES,
+  alternatePoses,
+  keysThatStay,
+  suggestionBeats,
+  suggestPoses,
+  temperatureOf,
+  VISIBLE_DISTANCE,
+  type StepRunner,
+  type SuggestRequest,
+} from '../../web/core/suggest';
+import { poseDistance, ROW_SIZE } from '../../web/core/suggest-pose';
+import type { StepInputs } from '../../web/core/suggest-step';
+import type { BeatGrid, Features, KeyPose } from '../../web/core/types';
+
+const SECONDS = 20;
+const frames = SECONDS * 30;
+const features: Features = {
+  fps: 30,
+  names: spec.features.names,
+  frames,
+  data: new Float32Array(frames * 15),
+  timbre: Float32Array.from({ length: frames * TIMBRE_SIZE }, (_, i) => Math.sin(i * 12.9898)),
+};
+/** Half-second beats from 0; a pick-up beat before the first bar line at 0.5 s. */
+const beats = Array.from({ length: 39 }, (_, i) => i / 2);
+const grid: BeatGrid = { tempo: 120, beatsPerBar: 4, beats, downbeats: beats.filter((_, i) => i % 4 === 1) };
+const whole = { start: 0, end: SECONDS };
+const REST = new Array<number>(72).fill(0);
+const pose = (turn: number, joint = 'left_shoulder') => {
+  const rotations = [...REST];
+  rotations[jointIndex(joint) * 3 + 2] = turn;
+  return rotations;
+};
+const key = (id: string, time: number, more: Partial<KeyPose> = {}): KeyPose => ({
+  id,
+  time,
+  rotations: pose(0.3),
+  ...more,
+});
+const request = (more: Partial<SuggestRequest> = {}): SuggestRequest => ({
+  features,
+  grid,
+  keyPoses: [],
+  density: 'beat',
+  range: whole,
+  variation: 0.5,
+  seed: 7,
+  ...more,
+});
+const times = (list: number[]) => list.map((k) => beats[k]);
+
+/** A network that raises the left arm by the code that the noise names; steps come one beat after the other. */
+function fakeNetwork(steps: StepInputs[] = [], angle = (code: number) => -1.2 + code / 300): StepRunner {
+  return async (inputs) => {
+    steps.push(inputs);
+    const batch = inputs.noise.dims[0];
+    const poses = new Float32Array(batch * ROW_SIZE);
+    const codes = new Float32Array(batch);
+    for (let i = 0; i < batch; i++) {
+      const noise = inputs.noise.data.subarray(i * 512, (i + 1) * 512);
+      codes[i] = noise.indexOf(Math.max(...noise));
+      poses.set(quaternionsToSixD(poseToQuaternions(pose(angle(codes[i])))), i * ROW_SIZE);
+      poses[(i + 1) * ROW_SIZE - 2] = 0.9;
+    }
+    return { poses, codes };
+  };
+}
+
+describe('the beats that get a pose', () => {
+  it('are all, two in a bar, or the first of each bar', () => {
+    expect(suggestionBeats(request())).toHaveLength(39);
+    expect(times(suggestionBeats(request({ density: 'bar' })))).toEqual([
+      0.5, 2.5, 4.5, 6.5, 8.5, 10.5, 12.5, 14.5, 16.5, 18.5,
+    ]);
+    expect(times(suggestionBeats(request({ density: 'half', range: { start: 0, end: 4 } })))).toEqual([
+      0.5, 1.5, 2.5, 3.5,
+    ]);
+    const waltz: BeatGrid = { tempo: 120, beatsPerBar: 3, beats: beats.slice(0, 6), downbeats: [0, 1.5] };
+    expect(times(suggestionBeats(request({ grid: waltz, density: 'half' })))).toEqual([0, 1, 1.5, 2.5]);
+    expect(suggestionBeats(request({ grid: { ...grid, downbeats: [] }, density: 'bar' }))[1]).toBe(4);
+  });
+
+  it('keep clear of what stays, and only of that', () => {
+    const keyPoses = [
+      key('own', 2.1),
+      key('old', 4, { suggested: true }),
+      key('held', 6, { suggested: true, locked: true }),
+    ];
+    const found = times(suggestionBeats(request({ keyPoses })));
+    expect(found).not.toContain(2);
+    expect(found).toContain(2.5);
+    expect(found).toContain(4);
+    expect(found).not.toContain(6);
+    // A suggestion outside the stretch stays too.
+    const range = { start: 4.5, end: 8 };
+    expect(keysThatStay(keyPoses, range).map(({ id }) => id)).toEqual(['own', 'old', 'held']);
+    expect(times(suggestionBeats(request({ keyPoses, range })))[0]).toBe(4.5);
+  });
+
+  it('lie between own key poses where only gaps are asked for', () => {
+    const keyPoses = [key('a', 3), key('b', 5), key('s', 9, { suggested: true })];
+    expect(times(suggestionBeats(request({ keyPoses, gaps: true })))).toEqual([3.5, 4, 4.5]);
+    expect(suggestionBeats(request({ keyPoses: [key('a', 3)], gaps: true }))).toEqual([]);
+  });
+});
+
+describe('suggesting', () => {
+  it('walks the beats one by one: each step has the poses before it and the music around it', async () => {
+    const steps: StepInputs[] = [];
+    const parts: number[] = [];
+    const found = await suggestPoses(request({ range: { start: 0, end: 9 } }), fakeNetwork(steps), {
+      onPose: ({ time }, fraction) => parts.push(time, fraction),
+    });
+    expect(found.map(({ time }) => time)).toEqual(beats.slice(0, 19));
+    expect(parts.slice(-2)).toEqual([9, 1]);
+    expect(steps).toHaveLength(19);
+    const sum = (list: Float32Array) => list.reduce((a, b) => a + b, 0);
+    expect(steps.map(({ pose_mask }) => sum(pose_mask.data))).toEqual([
+      ...Array.from({ length: 16 }, (_, i) => i),
+      16,
+      16,
+      16,
+    ]);
+    // Oldest first: the newest stands in the last row, and is the pose found one beat before.
+    const newest = Array.from(steps[5].poses.data.subarray(15 * ROW_SIZE, 15 * ROW_SIZE + 144));
+    quaternionsToSixD(poseToQuaternions(found[4].rotations)).forEach((v, i) => expect(newest[i]).toBeCloseTo(v, 5));
+    expect(steps[5].pose_mask.data[10]).toBe(0);
+    expect(steps[5].pose_mask.data[11]).toBe(1);
+    // Beats k-20..k+6 of those that there are.
+    expect(Array.from(steps[0].music_mask.data)).toEqual([...new Array(20).fill(0), ...new Array(7).fill(1)]);
+    expect(steps[0].music.dims).toEqual([1, 27, 57]);
+    expect(steps[2].music.data.subarray(18 * 57, 19 * 57)).toEqual(steps[1].music.data.subarray(19 * 57, 20 * 57));
+    expect(steps[0].next_beats.data[0]).toBe(-1);
+    expect(steps[0].temperature.data[0]).toBeCloseTo(temperatureOf(0.5), 6);
+  });
+
+  it('leads to own key poses and goes on from them', async () => {
+    const steps: StepInputs[] = [];
+    const own = key('own', 5.1, { rotations: pose(-0.9) });
+    const found = await suggestPoses(request({ keyPoses: [own], range: { start: 0, end: 8 } }), fakeNetwork(steps));
+    expect(found.map(({ time }) => time)).not.toContain(5);
+    expect(found).toHaveLength(16);
+    expect(steps[0].next_beats.data[0]).toBeCloseTo(10.2, 6);
+    expect(steps[9].next_beats.data[0]).toBeCloseTo(1.2, 5);
+    expect(steps[11].next_beats.data[0]).toBe(-1);
+    const wanted = quaternionsToSixD(poseToQuaternions(own.rotations));
+    expect(Array.from(steps[3].next_pose.data)).toEqual(Array.from(wanted));
+    // The step after it has it for its newest pose, with the root of the network.
+    expect(Array.from(steps[11].poses.data.subarray(15 * ROW_SIZE, 15 * ROW_SIZE + 144))).toEqual(Array.from(wanted));
+    expect(steps[11].poses.data[16 * ROW_SIZE - 2]).toBeCloseTo(0.9, 6);
+  });
+
+  it('does not look at a key pose that is too far ahead', async () => {
+    const steps: StepInputs[] = [];
+    await suggestPoses(request({ keyPoses: [key('own', 10)], range: { start: 0, end: 3 } }), fakeNetwork(steps));
+    expect(steps[3].next_beats.data[0]).toBe(-1);
+    expect(steps[4].next_beats.data[0]).toBe(16);
+  });
+
+  it('warms up before a stretch in the middle, and gives poses only inside', async () => {
+    const steps: StepInputs[] = [];
+    const range = { start: 10, end: 12 };
+    const found = await suggestPoses(request({ range, density: 'bar' }), fakeNetwork(steps));
+    expect(found.map(({ time }) => time)).toEqual([10.5]);
+    expect(steps).toHaveLength(17);
+    expect(steps[16].pose_mask.data.every((v) => v === 1)).toBe(true);
+  });
+
+  it('gives the same poses for the same seed, whatever the density; others for another', async () => {
+    const make = (more: Partial<SuggestRequest>) => suggestPoses(request(more), fakeNetwork());
+    const every = await make({});
+    expect(await make({})).toEqual(every);
+    const bars = await make({ density: 'bar' });
+    expect(bars.every((found) => every.some((each) => JSON.stringify(each) === JSON.stringify(found)))).toBe(true);
+    const other = await make({ seed: 8 });
+    expect(other.filter((found, i) => JSON.stringify(found) !== JSON.stringify(every[i])).length).toBeGreaterThan(30);
+  });
+
+  it('holds the limits of the joints', async () => {
+    const found = await suggestPoses(
+      request({ range: { start: 0, end: 2 } }),
+      fakeNetwork([], () => 3),
+    );
+    const shoulder = jointIndex('left_shoulder');
+    expect(withinLimits(shoulder, axisAngleToQuaternion(pose(3).slice(shoulder * 3, shoulder * 3 + 3)))).toBe(false);
+    for (const { rotations } of found)
+      for (let joint = 1; joint < 24; joint++)
+        expect(withinLimits(joint, axisAngleToQuaternion(rotations.slice(joint * 3, joint * 3 + 3)))).toBe(true);
+  });
+
+  it('stops when it is told to, and says why there is nothing to do', async () => {
+    const controller = new AbortController();
+    const stopped = suggestPoses(request(), fakeNetwork(), {
+      onPose: ({ time }) => time === 3 && controller.abort(),
+      signal: controller.signal,
+    });
+    await expect(stopped).rejects.toThrow(/abort/i);
+    const attempt = (more: Partial<SuggestRequest>) => suggestPoses(request(more), fakeNetwork());
+    await expect(attempt({ grid: { ...grid, beats: [], downbeats: [] } })).rejects.toThrow(/tap the tempo/);
+    await expect(attempt({ gaps: true })).rejects.toThrow(/at least two key poses/);
+    await expect(attempt({ range: { start: 3.1, end: 3.2 } })).rejects.toThrow(/another stretch/);
+    await expect(attempt({ style: 'foxtrot' })).rejects.toThrow(/no style "foxtrot"/);
+  });
+});
+
+describe('alternates', () => {
+  const at = key('s', 6, { suggested: true, rotations: pose(0) });
+
+  it('differ visibly from the pose and from each other, and are the same each time', async () => {
+    const make = () => alternatePoses(request({ keyPoses: [at] }), at, fakeNetwork());
+    const found = await make();
+    expect(found).toHaveLength(ALTERNATES);
+    const all = [at.rotations, ...found.slice(0, 3)];
+    for (let i = 0; i < all.length; i++)
+      for (let j = 0; j < i; j++) expect(poseDistance(all[i], all[j])).toBeGreaterThan(0.02);
+    expect(await make()).toEqual(found);
+  });
+
+  it('forbids codes that are taken and asks again where poses look alike', async () => {
+    const steps: StepInputs[] = [];
+    // All codes but those over 500 give one and the same pose.
+    const found = await alternatePoses(
+      request({ keyPoses: [at] }),
+      at,
+      fakeNetwork(steps, (code) => (code > 500 ? 1 : 0.01)),
+    );
+    const batches = steps.filter(({ noise }) => noise.dims[0] > 1);
+    expect(batches).toHaveLength(3);
+    const forbidden = batches[2].noise.data.subarray(0, 512).filter((v) => v < -1e8).length;
+    expect(forbidden).toBeGreaterThan(12);
+    expect(found.length).toBe(ALTERNATES);
+    expect(VISIBLE_DISTANCE).toBeGreaterThan(0);
+  });
+
+  it('have what is on the timeline for their past, whoever made it', async () => {
+    const steps: StepInputs[] = [];
+    const before = key('b', 5.5, { suggested: true, rotations: pose(0.7) });
+    await alternatePoses(request({ keyPoses: [before, at] }), at, fakeNetwork(steps));
+    const last = steps.at(-1)!;
+    expect(Array.from(last.poses.data.subarray(15 * ROW_SIZE, 15 * ROW_SIZE + 144))).toEqual(
+      Array.from(quaternionsToSixD(poseToQuaternions(before.rotations))),
+    );
+  });
+});
+
+describe('the mark of a suggestion', () => {
+  const keys = [key('s', 1, { suggested: true }), key('o', 2)];
+  const ids = new Set(['s']);
+
+  it('goes with the first edit of a hand', () => {
+    const first = (list: readonly KeyPose[]) => list.find(({ id }) => id === 's')!;
+    expect(first(editKeys(keys, ids, (each) => ({ ...each, rotations: pose(1) }))).suggested).toBeUndefined();
+    expect(first(setStrength(keys, ids, 0.5)).suggested).toBeUndefined();
+    expect(first(toggleLock(keys, ids)).suggested).toBeUndefined();
+    expect(first(shiftKeys(keys, ids, 0.2, 10)).suggested).toBeUndefined();
+    expect(first(settleKeys(keys, [key('n', 5)], 10)).suggested).toBe(true);
+    expect(editKeys(keys, ids, (each) => each)).toBe(keys);
+  });
+
+  it('is kept in projects, and a damaged one costs only itself', () => {
+    const song = { name: 'a.mp3', hash: 'ab', duration: 10 };
+    const saved = JSON.parse(JSON.stringify({ ...createDocument(song), keyPoses: keys })) as { keyPoses: KeyPose[] };
+    expect(parseDocument(saved).document.keyPoses).toEqual(keys);
+    (saved.keyPoses[0] as unknown as Record<string, unknown>).suggested = 'maybe';
+    const { document, repairs } = parseDocument(saved);
+    expect(document.keyPoses).toEqual([key('s', 1), key('o', 2)]);
+    expect(repairs).toHaveLength(1);
+    expect(checkKeyPoses(keys, 10)).toEqual(keys);
+  });
+});
