@@ -1,71 +1,9 @@
 import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
-import { createDocument, type ProjectDocument } from '../../web/core/document';
+import { createDocument } from '../../web/core/document';
 import { parseDocument } from '../../web/core/document-read';
 import { readProject, writeProject } from '../../web/core/formats/project-file';
-
-const unit = fc.double({ min: 0, max: 1, noNaN: true });
-const text = (maxLength: number) => fc.string({ unit: 'grapheme', minLength: 1, maxLength });
-const metres = fc.double({ min: -50, max: 50, noNaN: true });
-const triple = fc.tuple(metres, metres, metres);
-const seed = fc.nat();
-/** Ascending times on frames of their own, inside ten seconds. */
-const frames = (maxLength: number) =>
-  fc
-    .uniqueArray(fc.integer({ min: 0, max: 299 }), { maxLength })
-    .map((list) => list.sort((a, b) => a - b).map((f) => f / 30));
-
-const key = fc.record(
-  {
-    rotations: fc.array(fc.double({ min: -3, max: 3, noNaN: true }), { minLength: 72, maxLength: 72 }),
-    name: text(20),
-    locked: fc.constant(true as const),
-    strength: unit,
-  },
-  { requiredKeys: ['rotations'] },
-);
-const take = (id: string) => fc.record({ id: fc.constant(id), seed, variation: unit });
-const range = fc
-  .record({
-    start: unit,
-    length: unit,
-    takes: fc.tuple(take('t1'), take('t2')),
-    chosen: fc.constantFrom(null, 't1', 't2'),
-  })
-  .map(({ start, length, takes, chosen }) => ({ start: start * 4, end: start * 4 + 0.1 + length * 5, takes, chosen }));
-
-/** Any project that a person could have made. */
-const documents: fc.Arbitrary<ProjectDocument> = fc
-  .record({
-    url: fc.option(fc.webUrl(), { nil: undefined }),
-    trim: fc.constantFrom(null, { start: 1, end: 9 }),
-    beats: fc.option(frames(40), { nil: null }),
-    times: frames(6),
-    keys: fc.array(key, { minLength: 6, maxLength: 6 }),
-    ranges: fc.array(range, { maxLength: 3 }),
-    dials: fc.record({ keyStrength: unit, variation: unit, seed, seedClip: text(9) }),
-    avatar: text(9),
-    camera: fc.option(fc.record({ follows: fc.boolean(), position: triple, target: triple }), { nil: null }),
-    name: text(30),
-  })
-  .map((given) => ({
-    ...createDocument({ name: given.name, hash: 'ab', duration: 10, ...(given.url ? { url: given.url } : {}) }),
-    trim: given.trim,
-    grid:
-      given.beats && given.beats.length > 0
-        ? {
-            tempo: 120,
-            beatsPerBar: 4 as const,
-            beats: given.beats,
-            downbeats: given.beats.filter((_, i) => i % 4 === 0),
-          }
-        : null,
-    keyPoses: given.times.map((time, i) => ({ id: `k${i + 1}`, time, ...given.keys[i] })),
-    ranges: given.ranges.map((each, i) => ({ id: `r${i + 1}`, ...each })),
-    dials: given.dials,
-    avatar: given.avatar,
-    camera: given.camera,
-  }));
+import { documents, expectDocumentOrSentence, key, plain } from './support/documents';
 
 /** Every place of a JSON value, as the keys that lead there. */
 function places(value: unknown, path: string[] = []): string[][] {
@@ -83,20 +21,6 @@ function replaced(value: unknown, path: readonly string[], by: unknown, remove: 
   return copy;
 }
 
-/** What is read is a document that needs no further repair; what is refused is refused in a sentence. */
-function expectDocumentOrSentence(read: () => { document: ProjectDocument }): void {
-  let document: ProjectDocument;
-  try {
-    document = read().document;
-  } catch (error) {
-    expect(Object.getPrototypeOf(error)).toBe(Error.prototype);
-    expect((error as Error).message).toMatch(/^[A-Z].{10,}[.!]$/);
-    return;
-  }
-  expect(parseDocument(JSON.parse(JSON.stringify(document)))).toEqual({ document, repairs: [] });
-}
-
-const plain = (document: ProjectDocument) => JSON.parse(JSON.stringify(document)) as unknown;
 const junk = fc.oneof(
   fc.jsonValue(),
   fc.constantFrom<unknown>(null, '', -1, 0, 1e300, 1e-300, 0.5, [], {}, true, 'x'.repeat(3000), { __proto__: null }, [

@@ -1,5 +1,5 @@
 /** Reads single files out of a zip that nobody vouches for (PKWARE APPNOTE 6.3.10): nothing is inflated beyond what the caller allows. */
-import { Inflate } from 'fflate';
+import { inflateWithin } from './inflate';
 
 const END_SIGNATURE = 0x06054b50;
 const ENTRY_SIGNATURE = 0x02014b50;
@@ -11,8 +11,6 @@ const LOCAL_SIZE = 30;
 const MAX_COMMENT = 0xffff;
 /** More files than this are in no zip of ours. */
 const MAX_ENTRIES = 1000;
-/** Compressed bytes fed at a time: deflate makes at most 1032 times as much of them. */
-const PIECE = 4096;
 const STORED = 0;
 const DEFLATED = 8;
 
@@ -92,31 +90,13 @@ function unpack(bytes: Uint8Array, view: DataView, header: Header, limit: number
   const start = local + LOCAL_SIZE + view.getUint16(local + 26, true) + view.getUint16(local + 28, true);
   if (start + packed > bytes.length) throw damaged();
   const data = bytes.subarray(start, start + packed);
-  let out: Uint8Array;
+  let out: Uint8Array | null;
   if (header.method === STORED) out = data;
+  // What the header claims is not believed: inflating stops as soon as there is more than that.
   else if (header.method === DEFLATED) out = inflateWithin(data, size);
   else throw new Error('The file is packed in a way that Posebeat does not know: pack it as a plain zip.');
-  if (out.length !== size || crc32(out) !== header.check) throw damaged();
+  if (out?.length !== size || crc32(out) !== header.check) throw damaged();
   return out;
-}
-
-/** What the header claims is not believed: inflating stops as soon as there is more than that. */
-function inflateWithin(data: Uint8Array, size: number): Uint8Array {
-  const out = new Uint8Array(size);
-  let length = 0;
-  const inflate = new Inflate((chunk) => {
-    if (length + chunk.length > size) throw damaged();
-    out.set(chunk, length);
-    length += chunk.length;
-  });
-  try {
-    for (let at = 0; at < data.length; at += PIECE) {
-      inflate.push(data.subarray(at, at + PIECE), at + PIECE >= data.length);
-    }
-  } catch {
-    throw damaged();
-  }
-  return out.subarray(0, length);
 }
 
 const tooLarge = (limit: number) =>
