@@ -116,6 +116,31 @@ function about(axis: Numbers, angle: number): number[] {
   return [axis[0] * s, axis[1] * s, axis[2] * s, Math.cos(angle / 2)];
 }
 
+/**
+ * Rotation of a skin bone against the parent of its joint.
+ * @param local a joint's local rotation
+ */
+export function boneTurn({ joint, recipe }: SkinBone, local: (joint: number) => number[]): number[] {
+  const q = local(joint);
+  if (recipe.kind === 'joint') return q;
+  const limbBefore = ENDS.get(joint);
+  if (limbBefore !== undefined) {
+    // q = twist * swing: the twist belongs to the limb before the joint, so only the swing is bent here.
+    const axis = AXES[limbBefore];
+    const angle = twistAngle(q, axis);
+    const swing = multiply(about(axis, -angle), q);
+    const fraction = recipe.kind === 'bend' ? recipe.fraction : 1;
+    return multiply(about(axis, angle), slerp(IDENTITY, swing, fraction)) as number[];
+  }
+  const axis = AXES[joint];
+  const own = twistAngle(q, axis);
+  const swing = multiply(q, about(axis, -own));
+  if (recipe.kind === 'bend') return slerp(IDENTITY, swing, recipe.fraction) as number[];
+  const end = LIMBS.get(joint)!;
+  const added = ENDS.has(end) ? twistAngle(local(end), axis) : 0;
+  return multiply(swing, about(axis, recipe.fraction * (own + added))) as number[];
+}
+
 /** World state of the skeleton and of the skin bones for one pose. */
 export class SkinPose {
   /** World joint positions, 24 x 3, metres. */
@@ -137,26 +162,9 @@ export class SkinPose {
     SKIN_BONES.forEach((bone, index) => this.write(index, bone.joint, this.rotationOf(bone, local)));
   }
 
-  private rotationOf({ joint, recipe }: SkinBone, local: (joint: number) => number[]): number[] {
-    if (recipe.kind === 'joint') return this.worldOf(joint);
-    const parent = this.worldOf(PARENTS[joint]);
-    const q = local(joint);
-    const limbBefore = ENDS.get(joint);
-    if (limbBefore !== undefined) {
-      // q = twist * swing: the twist belongs to the limb before the joint, so only the swing is bent here.
-      const axis = AXES[limbBefore];
-      const angle = twistAngle(q, axis);
-      const swing = multiply(about(axis, -angle), q);
-      const fraction = recipe.kind === 'bend' ? recipe.fraction : 1;
-      return multiply(multiply(parent, about(axis, angle)), slerp(IDENTITY, swing, fraction)) as number[];
-    }
-    const axis = AXES[joint];
-    const own = twistAngle(q, axis);
-    const swing = multiply(q, about(axis, -own));
-    if (recipe.kind === 'bend') return multiply(parent, slerp(IDENTITY, swing, recipe.fraction)) as number[];
-    const end = LIMBS.get(joint)!;
-    const added = ENDS.has(end) ? twistAngle(local(end), axis) : 0;
-    return multiply(multiply(parent, swing), about(axis, recipe.fraction * (own + added))) as number[];
+  private rotationOf(bone: SkinBone, local: (joint: number) => number[]): number[] {
+    if (bone.recipe.kind === 'joint') return this.worldOf(bone.joint);
+    return multiply(this.worldOf(PARENTS[bone.joint]), boneTurn(bone, local)) as number[];
   }
 
   private worldOf(joint: number): number[] {
