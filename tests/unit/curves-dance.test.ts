@@ -16,9 +16,9 @@ const poses = [
 
 /** A song of some seconds with MFCC; beats every half second from 0.3 s on. */
 function request(seconds: number, overrides: Partial<CurveRequest> = {}): CurveRequest {
-  const { features, ...rest } = danceRequest(seconds, overrides);
+  const { features, ...rest } = danceRequest(seconds);
   const timbre = Float32Array.from({ length: features.frames * TIMBRE_SIZE }, (_, i) => Math.sin(i * 0.7));
-  return { ...rest, features: { ...features, timbre } };
+  return { ...rest, features: { ...features, timbre }, ...overrides };
 }
 const keysAt = (...times: number[]) => times.map((time, i) => key(time, poses[i % poses.length]));
 
@@ -37,7 +37,7 @@ describe('a dance of curves', () => {
     const make = async (seed: number) =>
       (
         await generateCurves(
-          request(8, { keyPoses, options: { keyStrength: 1, variation: 0.8, seed, cleanFeet: true } }),
+          request(8, { keyPoses, options: { variation: 0.8, seed, cleanFeet: true } }),
           fakeIntervals,
         )
       ).motion;
@@ -53,7 +53,7 @@ describe('a dance of curves', () => {
     // Beat b is at 0.3 + b / 2 s: frame 0 is 0.6 beats before the first.
     expect(beats[0]).toBeCloseTo(-0.6, 3);
     expect(beats.slice(1, -1)).toEqual([6, 7, 8, 9, 10, 11, 13, 14]);
-    expect(curves.times[curves.times.length - 1]).toBeCloseTo(239 / 30, 6);
+    expect(beats[beats.length - 1]).toBeGreaterThan(14);
     const { times } = curves;
     for (let k = 0; k + 1 < times.length; k++) expect(times[k + 1] - times[k]).toBeLessThanOrEqual(1.6 + 1e-9);
   });
@@ -95,10 +95,10 @@ describe('a dance of curves', () => {
   });
 
   it('dances a range with a take of its own another way, and the same poses outside', async () => {
-    const base = { keyPoses: keysAt(1.3), options: { keyStrength: 1, variation: 0.9, seed: 1, cleanFeet: false } };
+    const base = { keyPoses: keysAt(1.3), options: { variation: 0.9, seed: 1, cleanFeet: false } };
     const whole = await generateCurves(request(10, base), fakeIntervals);
     const takes = [{ from: 120, to: 210, seed: 5, variation: 1 }];
-    const other = await generateCurves(request(10, { ...base, takes } as Partial<CurveRequest>), fakeIntervals);
+    const other = await generateCurves(request(10, { ...base, takes }), fakeIntervals);
     expect(other.curves.times).toEqual(whole.curves.times);
     let changed = 0;
     for (let k = 0; k < whole.curves.times.length; k++) {
@@ -128,7 +128,7 @@ describe('a dance of curves', () => {
     const { curves } = await generateCurves(
       request(4, {
         keyPoses: keysAt(0.3, 1.3, 2.3, 3.3),
-        options: { keyStrength: 1, variation: 0, seed: 1, cleanFeet: false },
+        options: { variation: 0, seed: 1, cleanFeet: false },
       }),
       async (inputs) => {
         const given = await fakeIntervals(inputs);

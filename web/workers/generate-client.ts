@@ -1,4 +1,5 @@
 /** The page's side of the generate worker. */
+import type { EngineName } from '../core/document';
 import type { Motion } from '../core/types';
 import type { Backend, DanceRequest, GenerateReply, GenerateRequest } from './protocol';
 
@@ -21,6 +22,8 @@ export interface LoadOptions {
   backend?: Backend;
   /** WASM threads; by default up to four where the page is isolated. */
   threads?: number;
+  /** Which model; missing = light. The two are loaded independently of each other. */
+  engine?: EngineName;
   /** Where the page's own files are; by default document.baseURI, so that any sub-path works. */
   baseUrl?: string;
   onProgress?: (progress: LoadProgress) => void;
@@ -34,6 +37,14 @@ export interface GenerateHooks {
   signal?: AbortSignal;
 }
 
+/** A model that is loaded, or on its way. */
+interface Load {
+  /** Backend and threads. */
+  wanted: string;
+  job: number;
+  promise: Promise<LoadedModel>;
+}
+
 interface Pending {
   receive(reply: GenerateReply): void;
   fail(error: Error): void;
@@ -44,10 +55,7 @@ export class GenerateClient {
   private worker: Worker | undefined;
   private lastJob = 0;
   private readonly pending = new Map<number, Pending>();
-  private loading: Promise<LoadedModel> | undefined;
-  private loadJob = 0;
-  /** Backend and threads of the last load. */
-  private wanted = '';
+  private readonly loads = new Map<EngineName, Load>();
 
   /**
    * @param createWorker for tests
@@ -58,9 +66,9 @@ export class GenerateClient {
     public onBackendChange: (model: LoadedModel) => void = () => undefined,
   ) {}
 
-  /** The model in use, once it is loaded. */
+  /** The light model in use, once it is loaded. */
   get loaded(): Promise<LoadedModel> | undefined {
-    return this.loading;
+    return this.loads.get('light')?.promise;
   }
 
   /**
@@ -68,31 +76,30 @@ export class GenerateClient {
    * @throws Error with a message for people
    */
   load(options: LoadOptions = {}): Promise<LoadedModel> {
-    const { backend, threads, onProgress } = options;
+    const { backend, threads, onProgress, engine = 'light' } = options;
     const wanted = `${backend ?? 'best'} ${threads ?? 'auto'}`;
-    if (this.loading && this.wanted === wanted) return this.loading;
-    this.wanted = wanted;
+    const before = this.loads.get(engine);
+    if (before?.wanted === wanted) return before.promise;
     const baseUrl = options.baseUrl ?? document.baseURI;
-    const loading = new Promise<LoadedModel>((resolve, reject) => {
-      const job = this.begin({
+    const job = ++this.lastJob;
+    const promise = new Promise<LoadedModel>((resolve, reject) => {
+      this.pending.set(job, {
         receive: (reply) => {
           if (reply.type === 'loading') onProgress?.(strip(reply));
-          else if (reply.type === 'loaded') {
-            this.pending.delete(job);
-            resolve(strip(reply));
-          } else if (reply.type === 'error') this.settle(job, () => reject(new Error(reply.message)));
+          else if (reply.type === 'loaded') this.settle(job, () => resolve(strip(reply)));
+          else if (reply.type === 'error') this.settle(job, () => reject(new Error(reply.message)));
         },
         fail: (error) => this.settle(job, () => reject(error)),
       });
-      this.loadJob = job;
-      this.send({ type: 'load', job, baseUrl, backend, threads });
     });
-    this.loading = loading;
+    const own: Load = { wanted, job, promise };
+    this.loads.set(engine, own);
+    this.send({ type: 'load', job, baseUrl, backend, threads, ...(engine === 'light' ? {} : { engine }) });
     // A failed load may be tried again.
-    loading.catch(() => {
-      if (this.loading === loading) this.loading = undefined;
+    promise.catch(() => {
+      if (this.loads.get(engine) === own) this.loads.delete(engine);
     });
-    return loading;
+    return promise;
   }
 
   /**
@@ -104,7 +111,8 @@ export class GenerateClient {
     signal?.throwIfAborted();
     const abortion = abortPromise(signal);
     try {
-      await Promise.race([this.loading ?? this.load(), abortion.promise]);
+      const { engine = 'light' } = request;
+      await Promise.race([this.loads.get(engine)?.promise ?? this.load({ engine }), abortion.promise]);
       const job = ++this.lastJob;
       const result = new Promise<GenerateResult>((resolve, reject) => {
         this.pending.set(job, {
@@ -138,12 +146,6 @@ export class GenerateClient {
     this.stop(new Error('The dance generator was closed.'));
   }
 
-  private begin(pending: Pending): number {
-    const job = ++this.lastJob;
-    this.pending.set(job, pending);
-    return job;
-  }
-
   private settle(job: number, finish: () => void): void {
     this.pending.delete(job);
     finish();
@@ -155,7 +157,7 @@ export class GenerateClient {
       this.worker.onmessage = ({ data }: MessageEvent<GenerateReply>) => {
         const pending = this.pending.get(data.job);
         if (pending) pending.receive(data);
-        else if (data.type === 'loaded' && data.job === this.loadJob) this.moved(strip(data));
+        else if (data.type === 'loaded') this.moved(data.job, strip(data));
       };
       this.worker.onerror = (event) => {
         event.preventDefault();
@@ -166,15 +168,18 @@ export class GenerateClient {
     this.worker.postMessage(request);
   }
 
-  private moved(model: LoadedModel): void {
-    this.loading = Promise.resolve(model);
-    this.onBackendChange(model);
+  private moved(job: number, model: LoadedModel): void {
+    for (const [engine, load] of this.loads) {
+      if (load.job !== job) continue;
+      this.loads.set(engine, { ...load, promise: Promise.resolve(model) });
+      this.onBackendChange(model);
+    }
   }
 
   private stop(error: Error): void {
     this.worker?.terminate();
     this.worker = undefined;
-    this.loading = undefined;
+    this.loads.clear();
     for (const pending of [...this.pending.values()]) pending.fail(error);
     this.pending.clear();
   }

@@ -1,13 +1,16 @@
 /** Makes dances off the main thread: one job at a time, cancelled between windows. */
 import type { UncorrectedDance } from '../core/finish';
 import { generateMotion } from '../core/windows';
-import { DanceEngine } from './onnx-engine';
+import { CurveEngine } from './curves-engine';
+import { generateCurves } from '../core/curves-dance';
+import { DanceEngine, type EngineOptions, type EngineState } from './onnx-engine';
 import type { GenerateReply, GenerateRequest } from './protocol';
 
 type Load = Extract<GenerateRequest, { type: 'load' }>;
 type Generate = Extract<GenerateRequest, { type: 'generate' }>;
 
 let engine: Promise<DanceEngine> | undefined;
+let curveEngine: Promise<CurveEngine> | undefined;
 const jobs = new Map<number, AbortController>();
 /** Jobs run one after the other: two at once would only make both slow. */
 let queue: Promise<void> = Promise.resolve();
@@ -28,20 +31,59 @@ function breathe(): Promise<void> {
   });
 }
 
-async function load({ job, baseUrl, backend, threads }: Load): Promise<void> {
-  const before = await engine?.catch(() => undefined);
+async function load({ job, baseUrl, backend, threads, engine: name }: Load): Promise<void> {
+  const options: EngineOptions = {
+    folder: new URL('models/', baseUrl).href,
+    backend,
+    threads,
+    onProgress: (bytes, totalBytes, cached) =>
+      reply({ type: 'loading', job, fraction: totalBytes ? bytes / totalBytes : 1, bytes, totalBytes, cached }),
+  };
+  const onChange = (state: EngineState) => reply({ type: 'loaded', job, ...state });
+  const before = await (name === 'curves' ? curveEngine : engine)?.catch(() => undefined);
   await before?.close();
-  engine = DanceEngine.open(
-    {
-      folder: new URL('models/', baseUrl).href,
-      backend,
-      threads,
-      onProgress: (bytes, totalBytes, cached) =>
-        reply({ type: 'loading', job, fraction: totalBytes ? bytes / totalBytes : 1, bytes, totalBytes, cached }),
+  const opened =
+    name === 'curves'
+      ? (curveEngine = CurveEngine.open(options, onChange))
+      : (engine = DanceEngine.open(options, onChange));
+  reply({ type: 'loaded', job, ...(await opened).state });
+}
+
+async function generateByCurves(request: Generate, signal: AbortSignal): Promise<void> {
+  const { job } = request;
+  if (!curveEngine) throw new Error('The curves model is not loaded yet: wait until it is ready.');
+  const engine = await curveEngine;
+  const begin = performance.now();
+  let windows = 0;
+  const { motion, curves } = await generateCurves(
+    request,
+    async (inputs) => {
+      await breathe();
+      signal.throwIfAborted();
+      const outputs = await engine.run(inputs);
+      windows++;
+      return outputs;
     },
-    (state) => reply({ type: 'loaded', job, ...state }),
+    {
+      signal,
+      onProgress: (fraction) => reply({ type: 'partial', job, motion: null, fraction, windows }),
+    },
   );
-  reply({ type: 'loaded', job, ...(await engine).state });
+  const milliseconds = performance.now() - begin;
+  const { backend, model } = engine.state;
+  const buffers = [
+    motion.root,
+    motion.quaternions,
+    curves.times,
+    curves.keys,
+    curves.inner,
+    curves.shares,
+    curves.shape,
+  ];
+  reply(
+    { type: 'result', job, motion, curves, backend, model, windows, milliseconds },
+    buffers.map((array) => array.buffer),
+  );
 }
 
 async function generate(request: Generate, signal: AbortSignal): Promise<void> {
@@ -83,7 +125,8 @@ async function work(request: Load | Generate, controller: AbortController): Prom
   const { job } = request;
   try {
     controller.signal.throwIfAborted();
-    await (request.type === 'load' ? load(request) : generate(request, controller.signal));
+    if (request.type === 'load') await load(request);
+    else await (request.engine === 'curves' ? generateByCurves : generate)(request, controller.signal);
   } catch (error) {
     if (controller.signal.aborted) reply({ type: 'cancelled', job });
     else reply({ type: 'error', job, message: error instanceof Error ? error.message : String(error) });

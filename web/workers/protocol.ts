@@ -1,4 +1,7 @@
 /** Messages between the page and its workers: one typed union a direction. Every message carries the id of its job. */
+import type { CurveDance } from '../core/curves';
+import type { CurveTake } from '../core/curves-dance';
+import type { EngineName } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
 import type { BeatGrid, Features, KeyPose, Motion, SeedClip, Waveform } from '../core/types';
 
@@ -51,12 +54,16 @@ export interface DanceRequest {
   previous?: Motion;
   /** The uncorrected form of the dance so far. */
   previousUncorrected?: UncorrectedDance;
+  /** Missing = light. */
+  engine?: EngineName;
+  /** Engine `curves` only: ranges with takes of their own, all in one go. */
+  takes?: CurveTake[];
 }
 
 /** Page -> generate worker. */
 export type GenerateRequest =
   /** Loads onnxruntime and the model, and checks the backend with one golden window. `backend` forces one. */
-  | { type: 'load'; job: number; baseUrl: string; backend?: Backend; threads?: number }
+  | { type: 'load'; job: number; baseUrl: string; backend?: Backend; threads?: number; engine?: EngineName }
   | ({ type: 'generate'; job: number } & DanceRequest)
   | { type: 'cancel'; job: number };
 
@@ -72,6 +79,8 @@ export type GenerateReply =
       motion: Motion;
       /** What another key strength is made from without the network; a range has one only where the rest has. */
       uncorrected?: UncorrectedDance;
+      /** Engine `curves`: the curves that the motion is sampled from. */
+      curves?: CurveDance;
       backend: Backend;
       model: string;
       windows: number;
