@@ -13,6 +13,14 @@ const FLIGHT = 260;
 const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 /**
+ * What can be dragged listens for `touchmove` with this from the start: WebKit does not ask listeners that come during a touch.
+ * A finger that drags does not scroll.
+ */
+export function holdScroll(event: TouchEvent & { currentTarget: HTMLElement }): void {
+  if (event.currentTarget.dataset.dragged && event.cancelable) event.preventDefault();
+}
+
+/**
  * Begins when the pointer has moved (mouse) or rested (touch); Escape or a drop elsewhere adds nothing.
  * @param drop what to do with the pose at a time; by default it becomes a key pose
  */
@@ -47,7 +55,9 @@ export function startPoseDrag(
     if (next.pointerId !== pointerId) return;
     const distance = Math.hypot(next.clientX - startX, next.clientY - startY);
     if (!ghost) {
-      if (touch && distance > TOUCH_SLOP) stop();
+      // On a busy page a move comes before the timer that was due first: the finger's own clock decides.
+      if (touch && next.timeStamp - event.timeStamp >= LONG_PRESS) lift(next.clientX, next.clientY);
+      else if (touch && distance > TOUCH_SLOP) stop();
       else if (!touch && distance > MOUSE_THRESHOLD) lift(next.clientX, next.clientY);
       return;
     }
@@ -65,9 +75,6 @@ export function startPoseDrag(
     next.preventDefault();
     stop();
   };
-  const holdScroll = (next: TouchEvent) => {
-    if (ghost) next.preventDefault();
-  };
   const stop = () => {
     clearTimeout(timer);
     ghost?.remove();
@@ -79,14 +86,12 @@ export function startPoseDrag(
     window.removeEventListener('pointerup', up);
     window.removeEventListener('pointercancel', up);
     window.removeEventListener('keydown', escape, true);
-    window.removeEventListener('touchmove', holdScroll);
   };
   if (touch) timer = setTimeout(() => lift(startX, startY), LONG_PRESS);
   window.addEventListener('pointermove', move);
   window.addEventListener('pointerup', up);
   window.addEventListener('pointercancel', up);
   window.addEventListener('keydown', escape, true);
-  window.addEventListener('touchmove', holdScroll, { passive: false });
 }
 
 function makeGhost(tile: HTMLElement): HTMLElement {

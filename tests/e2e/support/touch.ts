@@ -6,6 +6,9 @@ export interface Point {
   y: number;
 }
 
+/** Between two reports of a touch screen, milliseconds. */
+const FASTEST = 8;
+
 /** Middle of the first element that a selector finds. */
 export async function middleOf(page: Page, selector: string, index = 0): Promise<Point> {
   const box = await page.locator(selector).nth(index).boundingBox();
@@ -24,20 +27,28 @@ export class Fingers {
     return new Fingers(page, await page.context().newCDPSession(page));
   }
 
-  /** Presses, moves through points and lifts; every list is one finger's way, all of the same length. */
+  /** Presses, moves through points and lifts; every list is one finger's way, all of the same length. Times in milliseconds. */
   async drag(ways: Point[][], { hold = 0, pause = 16 } = {}): Promise<void> {
     const at = (step: number) => ways.map((way, id) => ({ ...way[step], id }));
-    await this.send('touchStart', at(0));
+    // Fingers keep their own time: on a busy page a swipe is handled late, but it was no slower.
+    let time = Date.now();
+    await this.send('touchStart', at(0), time);
     if (hold > 0) await this.page.waitForTimeout(hold);
+    time += hold;
     for (let step = 1; step < ways[0].length; step++) {
-      await this.send('touchMove', at(step));
+      time += Math.max(pause, FASTEST);
+      await this.send('touchMove', at(step), time);
       await this.page.waitForTimeout(pause);
     }
-    await this.send('touchEnd', []);
+    await this.send('touchEnd', [], time);
   }
 
-  private async send(type: 'touchStart' | 'touchMove' | 'touchEnd', touchPoints: (Point & { id: number })[]) {
-    await this.session.send('Input.dispatchTouchEvent', { type, touchPoints });
+  private async send(
+    type: 'touchStart' | 'touchMove' | 'touchEnd',
+    touchPoints: (Point & { id: number })[],
+    time: number,
+  ) {
+    await this.session.send('Input.dispatchTouchEvent', { type, touchPoints, timestamp: time / 1000 });
   }
 }
 

@@ -1,7 +1,7 @@
 import type { OwnPose } from '../../app/pose-store';
 import type { LibraryPose } from '../../core/types';
 import { Icon } from '../Icon';
-import { flyToLane, startPoseDrag } from '../pose-drag';
+import { flyToLane, holdScroll, startPoseDrag } from '../pose-drag';
 import { useStore } from '../store-context';
 import { PosePicture } from '../thumbs';
 
@@ -49,6 +49,7 @@ export function PoseTile({ pose, tabbable, renaming, onFocus, onMenu, onRename }
         onFocus={onFocus}
         onKeyDown={onKeyDown}
         onPointerDown={(event) => startPoseDrag(event, pose, store)}
+        onTouchMove={holdScroll}
         onContextMenu={(event) => {
           event.preventDefault();
           // A finger that rests drags; the keyboard's own key comes through onKeyDown.
