@@ -3,11 +3,13 @@ import spec from '../core/spec.json';
 import { motionToAxisAngle } from '../core/motion';
 import type { ProjectDocument } from '../core/document';
 import type { GenerateCall, GenerateSummary } from './actions/dance';
+import type { MotionFileOptions } from './actions/export';
+import { MOTION_FORMATS, type MotionFormat } from './motion-formats';
 import type { DanceReport } from './report';
 import type { Store } from './store';
 
 /** What `exportAs` knows. */
-export type ExportFormat = 'bvh' | 'glb' | 'npz' | 'curves' | 'project';
+export type ExportFormat = MotionFormat | 'curves' | 'project';
 
 /** The public API. Rejected input throws an Error that says what is wrong, and leaves the document as it was. */
 export interface PosebeatApi {
@@ -32,10 +34,10 @@ export interface PosebeatApi {
   motion(): { fps: number; rotations: Float32Array; root: Float32Array };
   report(): DanceReport;
   /**
-   * A file of the project: `project` is JSON text, or with `song: true` a zip with the song's own bytes inside (both open again as
-   * `.posebeat`).
+   * A file. `bvh`, `glb`, `npz` (SMPL: AIST++ and AMASS names) and `json` hold the dance on stage; `project` is JSON text, or with
+   * `song: true` a zip with the song's own bytes inside (both open again as `.posebeat`).
    */
-  exportAs(format: ExportFormat, options?: { song?: boolean }): Promise<Blob>;
+  exportAs(format: ExportFormat, options?: MotionFileOptions & { song?: boolean }): Promise<Blob>;
   shareLink(): Promise<string>;
   /** A copy of the project document. */
   document(): ProjectDocument;
@@ -85,10 +87,11 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
     },
     async exportAs(format, options = {}) {
       if (format === 'project') return store.projectFile(options.song === true);
-      if (['bvh', 'glb', 'npz', 'curves'].includes(format)) {
-        throw new Error(`Export as ${format} is not available yet: use "project".`);
+      if ((MOTION_FORMATS as readonly string[]).includes(format)) {
+        return store.exportMotion(format as MotionFormat, options);
       }
-      throw new Error(`There is no export format "${String(format)}": use "project".`);
+      if (format === 'curves') throw new Error('Export as curves is not available yet: use "glb".');
+      throw new Error(`There is no export format "${String(format)}": use bvh, glb, npz, json or project.`);
     },
     shareLink: () => Promise.reject(new Error('Share links are not available yet: use exportAs("project").')),
     document: () => structuredClone(state.document.value),

@@ -6,6 +6,7 @@ import type { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import type { Backend } from '../workers/protocol';
 import type { Assets, Engine, Listener, Storage } from './ports';
+import type { MotionFileWriter } from './export-client';
 import type { PoseStore } from './pose-store';
 import type { NoticeAction, State } from './state';
 import type { Tabs } from './tabs';
@@ -19,6 +20,8 @@ export interface Services {
   assets: Assets;
   /** Missing: the browser's own. */
   poseStore?: PoseStore;
+  /** Missing: in a worker. */
+  writeMotionFile?: MotionFileWriter;
   /** Missing where there can be no other tab. */
   tabs?: Tabs;
   /** From `?backend=`. */

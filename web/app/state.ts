@@ -85,6 +85,13 @@ export type Generation =
   /** `range` is what is being made anew; without it the whole dance is. */
   | { status: 'running'; fraction: number; windows: number; range?: TimeRange };
 
+/** A file on its way out. */
+export interface ExportJob {
+  format: string;
+  /** 0..1 */
+  fraction: number;
+}
+
 /** A message to the visitor. */
 export interface Notice {
   id: number;
@@ -250,6 +257,10 @@ export function createState() {
     /** Small screens: whether the inspector is open; a large one shows it always. */
     sheetOpen: signal(true),
     help: signal(false),
+    /** The export panel. */
+    exportOpen: signal(false),
+    /** The motion file that is being written, or null. */
+    exportJob: signal<ExportJob | null>(null),
     /** The walk-through: which step is shown, from 0; null = none. */
     tour: signal<number | null>(null),
     notices: signal<Notice[]>([]),

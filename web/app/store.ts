@@ -8,6 +8,7 @@ import { cameraActions } from './actions/camera';
 import { compareActions } from './actions/compare';
 import { danceActions } from './actions/dance';
 import { demoActions } from './actions/demo';
+import { exportActions } from './actions/export';
 import { keyActions } from './actions/keys';
 import { layoutActions } from './actions/layout';
 import { libraryActions } from './actions/library';
@@ -161,6 +162,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...poseImportActions(context, library, keys, pose),
     ...songs,
     ...project,
+    ...exportActions(context),
     ...demo,
     ...tabs,
     ...view,

@@ -1,0 +1,33 @@
+/** A dance as a file for other programs. No page is needed for it: this runs in a worker. */
+import { writeBvh } from '../core/formats/bvh-write';
+import { frameTimes, motionSamplers } from '../core/formats/glb-motion';
+import { writeGlb } from '../core/formats/glb-write';
+import { writeMotionJson } from '../core/formats/motion-json';
+import { writeNpz } from '../core/formats/npz-write';
+import { resampleMotion } from '../core/motion-resample';
+import { helperSamplers } from '../scene/skin-samplers';
+import type { MotionFileRequest } from './motion-formats';
+
+/**
+ * Writes the file.
+ * @param progress hears of it, 0..1
+ * @throws Error when the dance has no frames
+ */
+export function writeMotionFile(
+  request: MotionFileRequest,
+  progress: (fraction: number) => void = () => undefined,
+): Uint8Array<ArrayBuffer> {
+  const { format, units, name, notes, figure } = request;
+  const motion = resampleMotion(request.motion, request.fps);
+  // The rest is mostly the writing, which is measured where it takes long.
+  progress(0.1);
+  const text = (content: string) => new TextEncoder().encode(content);
+  if (format === 'bvh')
+    return text(writeBvh(motion, { units, progress: (fraction) => progress(0.1 + fraction * 0.9) }));
+  if (format === 'npz') return writeNpz(motion);
+  if (format === 'json') return text(writeMotionJson(motion, notes));
+  const times = frameTimes(motion);
+  const samplers = [...motionSamplers(motion, times), ...(figure ? helperSamplers(motion, times) : [])];
+  progress(0.7);
+  return writeGlb({ name, samplers, figure });
+}

@@ -1,0 +1,50 @@
+/** Motion files: which there are and what they are made from. What writes them is in `motion-file.ts`, for the worker alone. */
+import type { GlbFigure } from '../core/formats/glb-write';
+import type { MotionNotes } from '../core/formats/motion-json';
+import type { Motion } from '../core/types';
+
+/** Formats of motion files. */
+export const MOTION_FORMATS = ['bvh', 'glb', 'npz', 'json'] as const;
+/** One of them. */
+export type MotionFormat = (typeof MOTION_FORMATS)[number];
+/** Frame rates that are offered. */
+export const FRAME_RATES = [24, 30, 60, 120] as const;
+
+/** All that a file is made from. */
+export interface MotionFileRequest {
+  format: MotionFormat;
+  /** The part of the dance that is wanted. */
+  motion: Motion;
+  /** Frames per second of the file. */
+  fps: number;
+  /** BVH: what a unit of length is. */
+  units: 'm' | 'cm';
+  /** Name of the animation. */
+  name: string;
+  notes: MotionNotes;
+  /** GLB: the figure that dances; missing = the skeleton alone. */
+  figure?: GlbFigure;
+}
+
+/** What browsers call the formats. */
+export const MOTION_TYPES: Readonly<Record<MotionFormat, string>> = {
+  bvh: 'text/plain',
+  glb: 'model/gltf-binary',
+  npz: 'application/zip',
+  json: 'application/json',
+};
+
+/** Bytes per frame and of the rest, measured on dances of ours; the figure adds its mesh and its helper bones. */
+const SIZES: Readonly<Record<MotionFormat | 'figure', { frame: number; rest: number }>> = {
+  bvh: { frame: 745, rest: 3000 },
+  glb: { frame: 400, rest: 8000 },
+  figure: { frame: 330, rest: 1_500_000 },
+  npz: { frame: 540, rest: 3000 },
+  json: { frame: 920, rest: 2500 },
+};
+
+/** About how many bytes a file will have. */
+export function estimateBytes(format: MotionFormat, frames: number, figure: boolean): number {
+  const sizes = format === 'glb' && figure ? [SIZES.glb, SIZES.figure] : [SIZES[format]];
+  return sizes.reduce((sum, { frame, rest }) => sum + frame * frames + rest, 0);
+}
