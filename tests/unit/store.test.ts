@@ -195,7 +195,7 @@ describe('dances', () => {
   });
 
   it.each([
-    [{ engine: 'curves' as const }, /not available yet/],
+    [{ engine: 'heavy' as never }, /no engine/],
     [{ keyStrength: 2 }, /0 to 1/],
     [{ seed: 1.5 }, /whole number/],
     [{ backend: 'cuda' as never }, /no backend/],

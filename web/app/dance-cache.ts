@@ -88,6 +88,8 @@ export class DanceCache {
     const add = ({ root, quaternions }: Motion) => buffers.add(root.buffer).add(quaternions.buffer);
     for (const { dance } of this.entries) {
       add(dance.motion);
+      const { curves } = dance;
+      if (curves) for (const part of [curves.keys, curves.inner, curves.shape]) buffers.add(part.buffer);
       if (!dance.uncorrected) continue;
       add(dance.uncorrected.motion);
       for (const { motion, context } of dance.uncorrected.layers ?? []) {

@@ -1,5 +1,6 @@
 /** Makes the dance of a document step by step: the whole, then each range on top; what was made before is taken from the cache. */
 import type { FrameRange } from '../core/excerpt';
+import { NO_EDITS } from '../core/curves-edit';
 import type { UncorrectedDance } from '../core/finish';
 import type { Motion, SeedClip } from '../core/types';
 import type { DanceRequest } from '../workers/protocol';
@@ -26,7 +27,7 @@ export interface MakeWish {
 }
 
 /** A dance that was made. */
-export type MadeDance = Pick<Dance, 'motion' | 'uncorrected' | 'keyStrength' | 'result'>;
+export type MadeDance = Pick<Dance, 'motion' | 'uncorrected' | 'keyStrength' | 'result' | 'curves' | 'curveEdits'>;
 
 /** Makes dances with the engine, the report worker and the cache. */
 export function createMaker({ state, services, analysed }: Context, reporter: Reporter, cache: DanceCache) {
@@ -72,7 +73,40 @@ export function createMaker({ state, services, analysed }: Context, reporter: Re
     }
   }
 
+  /**
+   * Curves are made in one go, ranges with takes of their own included.
+   * @param extra one range more, which the document does not know of
+   */
+  async function makeCurves(wish: MakeWish, extra?: RangeStep): Promise<MadeDance> {
+    const { inputs, dials, seedClip, ready, onProgress, signal } = wish;
+    const recipe = recipeOf({ ...inputs, dials: { ...inputs.dials, ...dials } }, state.frames.value);
+    await ready();
+    const music = onGrid(await analysed(), inputs.grid);
+    signal.throwIfAborted();
+    const { motion, curves, ...result } = await services.engine.generate(
+      {
+        ...music,
+        frames: state.frames.value,
+        keyPoses: [...inputs.keyPoses],
+        seedClip,
+        otherClips: state.seeds.value,
+        ...(recipe.trim ? { trim: recipe.trim } : {}),
+        engine: 'curves',
+        takes: [...recipe.ranges, ...(extra ? [extra] : [])],
+        options: { keyStrength: 1, ...recipe.base, cleanFeet: true },
+      },
+      (_, fraction, windows) => {
+        if (!signal.aborted) onProgress(null, fraction, windows);
+      },
+      signal,
+    );
+    signal.throwIfAborted();
+    if (!curves) throw new Error('The curves model gave no curves: reload the page.');
+    return { motion, curves, curveEdits: NO_EDITS, result };
+  }
+
   async function make(wish: MakeWish): Promise<MadeDance> {
+    if (wish.inputs.engine === 'curves') return makeCurves(wish);
     const { inputs, dials, seedClip, reuse, signal } = wish;
     const { keyStrength } = dials;
     const frames = state.frames.value;
@@ -150,6 +184,7 @@ export function createMaker({ state, services, analysed }: Context, reporter: Re
 
   return {
     make,
+    makeCurves,
     /** True when the cache has all that a dance is made of. */
     isKnown: (inputs: DanceInputs) => known(inputs)?.left.length === 0,
   };

@@ -14,7 +14,7 @@ export function createEngine(onMove: (model: ModelInfo) => void = () => undefine
     return client;
   };
   return {
-    load: async (backend, onProgress) => (await open()).load({ backend, onProgress }),
+    load: async (backend, onProgress, engine) => (await open()).load({ backend, onProgress, engine }),
     generate: async (request, onPartial, signal) => (await open()).generate(request, { onPartial, signal }),
   };
 }

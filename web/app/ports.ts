@@ -2,7 +2,9 @@
 import type { UncorrectedDance } from '../core/finish';
 import type { BeatGrid, Features, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
 import type { Backend, DanceRequest } from '../workers/protocol';
-import type { ProjectDocument } from '../core/document';
+import type { CurveDance } from '../core/curves';
+import type { CurveEdit } from '../core/curves-edit';
+import type { EngineName, ProjectDocument } from '../core/document';
 import type { DanceInputs } from './recipe';
 
 /** A song as the browser decoded it. */
@@ -49,6 +51,8 @@ export interface DanceResult {
   motion: Motion;
   /** What another key strength is made from without the network. */
   uncorrected?: UncorrectedDance;
+  /** Engine `curves`: what the motion is sampled from. */
+  curves?: CurveDance;
   backend: Backend;
   model: string;
   windows: number;
@@ -57,8 +61,12 @@ export interface DanceResult {
 
 /** The generate worker, seen from the app. */
 export interface Engine {
-  /** Loads the model once; asking again for the same backend is free. */
-  load(backend: Backend | undefined, onProgress: (progress: LoadProgress) => void): Promise<ModelInfo>;
+  /** Loads a model once; asking again for the same backend is free. */
+  load(
+    backend: Backend | undefined,
+    onProgress: (progress: LoadProgress) => void,
+    engine?: EngineName,
+  ): Promise<ModelInfo>;
   /** Rejects with an AbortError when `signal` fires. */
   generate(
     request: DanceRequest,
@@ -86,6 +94,8 @@ export interface SavedDance {
   byDials?: boolean;
   /** What it was made from; where this is missing, what the document holds now. */
   inputs?: DanceInputs;
+  curves?: CurveDance;
+  curveEdits?: readonly CurveEdit[];
 }
 
 /** The browser's own storage; every method tolerates its absence by rejecting. */

@@ -1,5 +1,12 @@
 /** What a dance is made from: the parts of the document that count, and the steps of the network that they ask for. */
-import { frameOf, type Dials, type ProjectDocument, type TakeRange, type TimeRange } from '../core/document';
+import {
+  frameOf,
+  type Dials,
+  type EngineName,
+  type ProjectDocument,
+  type TakeRange,
+  type TimeRange,
+} from '../core/document';
 import type { FrameRange } from '../core/excerpt';
 import type { BeatGrid, KeyPose } from '../core/types';
 
@@ -10,6 +17,8 @@ export interface DanceInputs {
   dials: Dials;
   ranges: readonly TakeRange[];
   trim: TimeRange | null;
+  /** Missing = light. */
+  engine?: EngineName;
 }
 
 /** A range to be made anew, on frames of the song. */
@@ -30,8 +39,8 @@ export interface Recipe {
 export const SHORTEST_RANGE = 8;
 
 /** What the dance of a document is made from. */
-export function inputsOf({ keyPoses, grid, dials, ranges, trim }: ProjectDocument): DanceInputs {
-  return { keyPoses, grid, dials, ranges, trim };
+export function inputsOf({ keyPoses, grid, dials, ranges, trim, engine }: ProjectDocument): DanceInputs {
+  return { keyPoses, grid, dials, ranges, trim, ...(engine ? { engine } : {}) };
 }
 
 /** The frames of a trim; null when it leaves the whole song or nothing. */
@@ -71,6 +80,7 @@ export function recipeOf({ dials, ranges, trim }: DanceInputs, frames: number): 
 export function sameGround(a: DanceInputs, b: DanceInputs, frames: number): boolean {
   const [first, second] = [trimFrames(a.trim, frames), trimFrames(b.trim, frames)];
   return (
+    (a.engine ?? 'light') === (b.engine ?? 'light') &&
     a.dials.seedClip === b.dials.seedClip &&
     first?.from === second?.from &&
     first?.to === second?.to &&
@@ -85,8 +95,10 @@ export function sameGround(a: DanceInputs, b: DanceInputs, frames: number): bool
  */
 export function madeFrom(inputs: DanceInputs, wanted: DanceInputs, tunable: boolean, frames: number): boolean {
   if (!sameGround(inputs, wanted, frames)) return false;
-  if (!tunable && inputs.dials.keyStrength !== wanted.dials.keyStrength) return false;
-  if (!tunable && !sameStrengths(inputs.keyPoses, wanted.keyPoses)) return false;
+  // Curves run through every key pose, whatever the strengths say.
+  const follows = tunable || inputs.engine === 'curves';
+  if (!follows && inputs.dials.keyStrength !== wanted.dials.keyStrength) return false;
+  if (!follows && !sameStrengths(inputs.keyPoses, wanted.keyPoses)) return false;
   const [a, b] = [recipeOf(inputs, frames), recipeOf(wanted, frames)];
   return (
     a.base.seed === b.base.seed &&

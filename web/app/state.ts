@@ -3,6 +3,8 @@ import { computed, signal } from '@preact/signals';
 import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
 import type { PoseClips } from '../core/formats/pose-sequence';
+import type { CurveDance, CurveTrack } from '../core/curves';
+import type { CurveEdit } from '../core/curves-edit';
 import type { ProjectDocument, SongReference, TimeRange } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
 import type { Limb } from '../core/pose-tools';
@@ -58,6 +60,9 @@ export interface Dance {
   /** True when the document's own dials made it, so that it is what they stand for. */
   byDials?: boolean;
 }
+  /** Engine `curves`: the curves as they were made, and the visitor's changes that `motion` has. */
+  curves?: CurveDance;
+  curveEdits?: readonly CurveEdit[];
 
 /** Consistency against smoothness of a dance, as far as it is worked out. */
 export interface TradeOff {
@@ -173,6 +178,7 @@ export function createState() {
   const frames = computed(() => Math.ceil(duration.value * spec.fps));
   return {
     document,
+    ...createSuggestState(),
     undoLabel: signal<string | null>(null),
     redoLabel: signal<string | null>(null),
     song,
@@ -197,6 +203,11 @@ export function createState() {
     strengthDraft: signal<number | null>(null),
     tradeOff: signal<TradeOff | null>(null),
     /** Kinetic velocity against the music (paper A, figure 9) on the timeline. */
+    /** The curves of a joint under the timeline, to be edited. */
+    curvesOpen: signal(false),
+    curveTrack: signal<CurveTrack>(16),
+    /** The interval whose shape is in hand, by its place in the dance; null = the one at the playhead. */
+    curveInterval: signal<number | null>(null),
     curvesShown: signal(false),
     /** The beats in force: the visitor's corrections, else the analysis. */
     grid,

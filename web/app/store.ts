@@ -1,5 +1,6 @@
 /** The store: signals, and the only actions that write them. */
 import { batch, effect } from '@preact/signals';
+import { withoutOrphans } from '../core/curves-edit';
 import { createDocument, type ProjectDocument } from '../core/document';
 import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
@@ -7,6 +8,7 @@ import { beatActions } from './actions/beats';
 import { cameraActions } from './actions/camera';
 import { compareActions } from './actions/compare';
 import { danceActions } from './actions/dance';
+import { curveActions } from './actions/curves';
 import { demoActions } from './actions/demo';
 import { exportActions } from './actions/export';
 import { keyActions } from './actions/keys';
@@ -59,7 +61,7 @@ export function createStore(services: Services, reporter: Reporter) {
       });
     },
     change(label, edit) {
-      history.push(edit(history.present), label);
+      history.push(withOwnCurves(edit(history.present)), label);
       context.sync();
     },
     notify(kind, text, action) {
@@ -82,6 +84,7 @@ export function createStore(services: Services, reporter: Reporter) {
   const tuning = tuningActions(context, reporter, dance, cache);
   const beats = beatActions(context, dance.measureShown);
   const ranges = rangeActions(context, dance);
+  const curves = curveActions(context, dance, cache);
   const compare = compareActions(context, dance);
   const keys = keyActions(context);
   const view = viewActions(context);
@@ -153,6 +156,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...compare,
     ...pictureActions(context, dance),
     ...keys,
+    ...curves,
     ...beats,
     ...tapActions(context, beats),
     ...trimActions(context),
@@ -181,3 +185,13 @@ export function createStore(services: Services, reporter: Reporter) {
 
 /** State and actions of the page. */
 export type Store = ReturnType<typeof createStore>;
+/** A key pose that goes takes the changes of its curves along: its id may be given again. */
+function withOwnCurves(document: ProjectDocument): ProjectDocument {
+  const { curveEdits, keyPoses } = document;
+  const kept = curveEdits && withoutOrphans(curveEdits, keyPoses);
+  if (kept === curveEdits) return document;
+  const next = { ...document, curveEdits: kept };
+  if (!kept?.length) delete next.curveEdits;
+  return next;
+}
+

@@ -24,6 +24,8 @@ export interface CurveEdit {
   bias?: number;
 }
 
+/** Of a dance that nobody has changed anything of. */
+export const NO_EDITS: readonly CurveEdit[] = [];
 /** The handles of a curve's shape, in the order of {@link Shape}. */
 export const SHAPE_NAMES = ['tension', 'continuity', 'bias'] as const satisfies readonly (keyof Shape)[];
 /** Beats this close are the same one: fillers lie on whole frames, beats between them. */

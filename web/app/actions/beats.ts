@@ -19,6 +19,7 @@ import { nearestIndex } from '../../core/snap';
 import spec from '../../core/spec.json';
 import type { BeatGrid } from '../../core/types';
 import type { Context } from '../context';
+import { curvesOnGrid } from './curves';
 
 /** After other beats the report is measured anew, once nothing moved for so long, milliseconds. */
 const MEASURE_DELAY = 400;
@@ -63,7 +64,9 @@ export function beatActions(context: Context, measureShown: () => Promise<void>)
     return null;
   };
 
-  const onGrid = (document: ProjectDocument, grid: BeatGrid | null, warp: Warp): ProjectDocument => {
+  const onGrid = (from: ProjectDocument, grid: BeatGrid | null, warp: Warp): ProjectDocument => {
+    const heard = state.song.value?.grid ?? null;
+    const document = curvesOnGrid(from, from.grid ?? heard, warp, grid ?? heard);
     if (!state.ripple.value || warp === STAY) return { ...document, grid };
     const duration = state.duration.value;
     return {

@@ -1,5 +1,6 @@
 /** Making dances: loading the model, generating, cancelling, measuring. */
 import { batch } from '@preact/signals';
+import type { EngineName, ProjectDocument } from '../../core/document';
 import type { FrameRange } from '../../core/excerpt';
 import spec from '../../core/spec.json';
 import type { BeatGrid, Features, Motion, SeedClip } from '../../core/types';
@@ -7,7 +8,7 @@ import type { Backend } from '../../workers/protocol';
 import { isAbort, messageOf, onGrid, type Context } from '../context';
 import type { DanceCache } from '../dance-cache';
 import { createMaker } from '../dance-maker';
-import type { ModelInfo, SavedDance } from '../ports';
+import type { LoadProgress, ModelInfo, SavedDance } from '../ports';
 import { inputsOf, madeFrom, trimFrames, type DanceInputs } from '../recipe';
 import type { Reporter } from '../report-client';
 import { measureDance, type DanceReport } from '../report';
@@ -20,7 +21,8 @@ export interface GenerateCall {
   seed?: number;
   /** Seconds; only this stretch is made anew. */
   range?: { start: number; end: number };
-  engine?: 'light' | 'curves';
+  /** Another one than the project's becomes the project's. */
+  engine?: EngineName;
   backend?: Backend;
 }
 
@@ -49,7 +51,7 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
   let running: AbortController | null = null;
   /** The dance that the report is of. */
   let measured: Motion | null = null;
-  let loading: { backend: Backend | undefined; promise: Promise<ModelInfo> } | null = null;
+  const loading = new Map<EngineName, { backend: Backend | undefined; promise: Promise<ModelInfo> }>();
 
   const cancel = (reason = 'Cancelled.') => {
     running?.abort(new DOMException(reason, 'AbortError'));
@@ -58,25 +60,26 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     state.generation.value = { status: 'idle' };
   };
 
-  const loadModel = (backend = services.forcedBackend): Promise<ModelInfo> => {
-    if (loading && loading.backend === backend) return loading.promise;
+  const loadModel = (backend = services.forcedBackend, engine: EngineName = 'light'): Promise<ModelInfo> => {
+    const before = loading.get(engine);
+    if (before && before.backend === backend) return before.promise;
+    const onProgress = (progress: LoadProgress) => {
+      if (running) state.generation.value = { status: 'loading', ...progress };
+    };
     const promise = services.engine
-      .load(backend, (progress) => {
-        if (running) state.generation.value = { status: 'loading', ...progress };
-      })
+      .load(backend, onProgress, ...(engine === 'light' ? [] : [engine]))
       .then((info) => (state.model.value = info));
-    loading = { backend, promise };
+    loading.set(engine, { backend, promise });
     // A failed download must not be remembered: the next press of Generate tries again.
     promise.catch(() => {
-      if (loading?.promise === promise) loading = null;
+      if (loading.get(engine)?.promise === promise) loading.delete(engine);
     });
     return promise;
   };
 
   const check = (call: GenerateCall): void => {
-    if (call.engine !== undefined && call.engine !== 'light') {
-      if (call.engine === 'curves') throw new Error('The curves engine is not available yet: use engine "light".');
-      throw new Error(`There is no engine "${String(call.engine)}": use "light".`);
+    if (call.engine !== undefined && call.engine !== 'light' && call.engine !== 'curves') {
+      throw new Error(`There is no engine "${String(call.engine)}": use "light" or "curves".`);
     }
     if (call.backend !== undefined && call.backend !== 'webgpu' && call.backend !== 'wasm') {
       throw new Error(`There is no backend "${String(call.backend)}": use "webgpu" or "wasm".`);
@@ -90,6 +93,16 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     if (call.seed !== undefined && !(Number.isInteger(call.seed) && call.seed >= 0 && call.seed < 2 ** 31)) {
       throw new Error('seed must be a whole number from 0 to 2147483647.');
     }
+  };
+
+  /** What makes the dance: one step of undo; the other engine's dance comes back at once where it was made before. */
+  const setEngine = (engine: EngineName): void => {
+    context.change('Change engine', (document) => {
+      if ((document.engine ?? 'light') === engine) return document;
+      const next: ProjectDocument = { ...document, engine };
+      if (engine === 'light') delete next.engine;
+      return next;
+    });
   };
 
   const frameRange = (range: GenerateCall['range']): { from: number; to: number } | undefined => {
@@ -122,7 +135,8 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     const own = (running = new AbortController());
     const { signal } = own;
     const ready = async () => {
-      await Promise.race([loadModel(backend ?? services.forcedBackend), aborted(signal)]);
+      const { engine } = state.document.value;
+      await Promise.race([loadModel(backend ?? services.forcedBackend, engine), aborted(signal)]);
       const heard = await Promise.race([context.analysed(), aborted(signal)]);
       if (running === own) state.generation.value = { status: 'running', fraction: 0, windows: 0 };
       return heard;
@@ -144,6 +158,7 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
   async function generate(call: GenerateCall = {}): Promise<GenerateSummary> {
     check(call);
     const seedClip = seedClipNow();
+    if (call.engine) setEngine(call.engine);
     const range = frameRange(call.range);
     return range ? generateRange(call, range, seedClip) : generateWhole(call, seedClip, false);
   }
@@ -168,6 +183,14 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
       const heard = await ready();
       const inputs = inputsOf(state.document.value);
       const { keyStrength, variation, seed } = { ...inputs.dials, ...defined(call) };
+      if (inputs.engine === 'curves') {
+        const dials = { keyStrength, variation, seed };
+        const wish = { inputs, dials, seedClip, reuse: false, ready, onProgress: progress, signal };
+        const made = await maker.makeCurves(wish, { ...range, seed, variation });
+        signal.throwIfAborted();
+        show({ ...made, kind: 'generated', inputs, byDials: false });
+        return summary(made.motion, made.result);
+      }
       const trim = trimFrames(inputs.trim, state.frames.value);
       const { motion, uncorrected, ...result } = await services.engine.generate(
         {
@@ -241,8 +264,9 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
   function saveShown(): void {
     const dance = state.dance.value;
     if (!hash() || dance?.kind !== 'generated') return;
-    const { motion, uncorrected, keyStrength, byDials, inputs } = dance;
-    const saved = { hash: hash(), motion, uncorrected, keyStrength, byDials, inputs: inputs ?? undefined };
+    const { motion, uncorrected, keyStrength, byDials, inputs, curves, curveEdits } = dance;
+    const made = { motion, uncorrected, keyStrength, byDials, inputs: inputs ?? undefined };
+    const saved = { hash: hash(), ...made, ...(curves ? { curves, curveEdits } : {}) };
     services.storage.saveDance(saved).catch(() => undefined);
   }
 
@@ -270,6 +294,7 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
 
   return {
     loadModel,
+    setEngine,
     generate,
     measureShown,
     saveShown,
@@ -304,9 +329,10 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     /** Puts a dance from the last visit on stage, if it is one to the song at hand; it knows what it was made from. */
     restoreDance(saved: SavedDance | null): boolean {
       if (saved?.hash !== hash() || saved.motion.frames !== state.frames.value) return false;
-      const { motion, uncorrected, keyStrength, byDials } = saved;
+      const { motion, uncorrected, keyStrength, byDials, curves, curveEdits } = saved;
       const inputs = saved.inputs ?? inputsOf(state.document.value);
-      const dance: Dance = { motion, kind: 'generated', inputs, result: null, uncorrected, keyStrength, byDials };
+      const made = { motion, uncorrected, keyStrength, byDials, ...(curves ? { curves, curveEdits } : {}) };
+      const dance: Dance = { ...made, kind: 'generated', inputs, result: null };
       if (byDials) cache.remember(dance, hash());
       state.dance.value = dance;
       void measureShown();

@@ -151,7 +151,7 @@ export function songActions(context: Context, dance: DanceActions) {
       show(fresh, same ? before.dance : null);
       shown = true;
       state.songJob.value = { name: options.name, stage: 'analysing', fraction: 0 };
-      if (options.start) void dance.loadModel().catch(() => undefined);
+      if (options.start) void dance.loadModel(undefined, state.document.value.engine).catch(() => undefined);
 
       let started = false;
       const begin = () => {

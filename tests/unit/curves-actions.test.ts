@@ -1,0 +1,221 @@
+import { describe, expect, it, vi } from 'vitest';
+import { Player } from '../../web/audio/player';
+import { curvesOnStage, intervalInHand } from '../../web/app/actions/curves';
+import { createStore } from '../../web/app/store';
+import { rotationChannel, CHANNELS } from '../../web/core/curves';
+import { generateCurves } from '../../web/core/curves-dance';
+import { TIMBRE_SIZE } from '../../web/core/mfcc';
+import { angleBetween } from '../../web/core/rotation';
+import { jointIndex } from '../../web/core/skeleton';
+import type { Motion } from '../../web/core/types';
+import { fakeReporter, fakeServices, settled, type DanceRequest, type Services } from './support/app';
+import { fakeIntervals } from './support/curves';
+import { fourPoses } from '../e2e/support/page';
+
+const elbow = jointIndex('left_elbow');
+const poses = fourPoses();
+
+/** Makes real curves, without a model. */
+async function makeCurves(request: DanceRequest) {
+  const timbre = new Float32Array(request.features.frames * TIMBRE_SIZE);
+  const made = await generateCurves({ ...request, features: { ...request.features, timbre } }, fakeIntervals);
+  return { ...made, backend: 'wasm' as const, model: 'curves', windows: 1, milliseconds: 1 };
+}
+
+async function dancing(change: (services: Services) => void = () => undefined) {
+  const services = fakeServices(new Player(() => ({}) as AudioContext));
+  const light = services.engine.generate;
+  const load = vi.spyOn(services.engine, 'load');
+  const made = vi.spyOn(services.engine, 'generate').mockImplementation((request, onPartial, signal) => {
+    return request.engine === 'curves' ? makeCurves(request) : light(request, onPartial, signal);
+  });
+  change(services);
+  const store = createStore(services, fakeReporter());
+  await store.start();
+  await store.loadSong(new File(['song'], 'a.mp3'));
+  store.setKeyPoses([1, 2, 3].map((time, i) => ({ time, rotations: poses[i] })));
+  return { store, services, load, made };
+}
+
+async function withCurves() {
+  const all = await dancing();
+  await all.store.generate({ engine: 'curves' });
+  await settled();
+  return all;
+}
+
+const turn = (motion: Motion, time: number, joint = elbow) => {
+  const at = (Math.round(time * 30) * 24 + joint) * 4;
+  return motion.quaternions.slice(at, at + 4);
+};
+
+describe('the engine', () => {
+  it('is the project’s: asked for, kept, undone, and its model loaded only then', async () => {
+    const { store, load, made } = await dancing();
+    await store.generate();
+    expect(store.state.document.value).not.toHaveProperty('engine');
+    expect(load.mock.calls.every(([, , engine]) => engine === undefined)).toBe(true);
+    expect(made.mock.lastCall![0].engine).toBeUndefined();
+    await store.generate({ engine: 'curves' });
+    expect(store.state.document.value.engine).toBe('curves');
+    expect(load.mock.lastCall![2]).toBe('curves');
+    expect(store.state.dance.value?.curves).toBeDefined();
+    expect(store.state.stale.value).toBe(false);
+    // The other engine's dance is kept: it comes back with undo, without the network.
+    const calls = made.mock.calls.length;
+    store.undo();
+    await settled();
+    expect(store.state.document.value).not.toHaveProperty('engine');
+    expect(store.state.dance.value?.curves).toBeUndefined();
+    expect(store.state.stale.value).toBe(false);
+    store.redo();
+    await settled();
+    expect(store.state.dance.value?.curves).toBeDefined();
+    expect(made.mock.calls).toHaveLength(calls);
+  });
+
+  it('follows no key strength: the curves run through every key pose', async () => {
+    const { store } = await withCurves();
+    const before = store.state.dance.value!.motion;
+    store.commitStrength(0.3);
+    await settled();
+    expect(store.state.dance.value!.motion).toBe(before);
+    expect(store.state.stale.value).toBe(false);
+    for (const [i, time] of [1, 2, 3].entries()) {
+      const { shown } = curvesOnStage(store.state)!;
+      const k = shown.anchors.indexOf(store.state.document.value.keyPoses[i].id);
+      expect(shown.times[k]).toBe(time);
+    }
+  });
+
+  it('asks for ranges with takes of their own in the same go', async () => {
+    const { store, made } = await withCurves();
+    await store.regenerateRange({ start: 4, end: 7 });
+    expect(made.mock.lastCall![0].takes).toMatchObject([{ from: 120, to: 210 }]);
+    expect(made.mock.lastCall![0].range).toBeUndefined();
+    expect(store.state.stale.value).toBe(false);
+    await store.generate({ range: { start: 8, end: 9 }, seed: 9 });
+    expect(made.mock.lastCall![0].takes).toMatchObject([{ from: 120 }, { from: 240, to: 270, seed: 9 }]);
+  });
+});
+
+describe('a change of a curve', () => {
+  /** The interval that begins at the first key pose. */
+  const first = (store: Awaited<ReturnType<typeof withCurves>>['store']) =>
+    store.state.dance.value!.curves!.anchors.indexOf(store.state.document.value.keyPoses[0].id);
+
+  it('moves the figure while it is dragged, and is one step of undo', async () => {
+    const { store } = await withCurves();
+    const before = store.state.dance.value!.motion;
+    const interval = first(store);
+    store.beginCurveDrag();
+    for (const angle of [0.2, 0.4]) {
+      store.previewCurve(interval, elbow, {
+        knots: [
+          [0, 0, angle],
+          [0, 0, 0],
+        ],
+      });
+    }
+    const live = store.state.dance.value!.motion;
+    const knot = 1 + 1 / 3;
+    expect(angleBetween(turn(before, knot), turn(live, knot))).toBeCloseTo(0.4, 4);
+    store.commitCurveDrag();
+    expect(store.state.undoLabel.value).toBe('Edit curve');
+    expect(store.state.document.value.curveEdits).toHaveLength(1);
+    expect(store.state.stale.value).toBe(false);
+    store.undo();
+    expect(store.state.document.value).not.toHaveProperty('curveEdits');
+    expect(angleBetween(turn(store.state.dance.value!.motion, knot), turn(before, knot))).toBeLessThan(1e-4);
+    store.redo();
+    expect(angleBetween(turn(store.state.dance.value!.motion, knot), turn(live, knot))).toBeLessThan(1e-4);
+    // What the drag did not touch is the very same.
+    for (const time of [1, 2, 5]) expect(turn(live, time)).toEqual(turn(before, time));
+    expect(turn(live, knot, 3)).toEqual(turn(before, knot, 3));
+  });
+
+  it('never happened when its drag is cancelled', async () => {
+    const { store } = await withCurves();
+    const [document, before] = [store.state.document.value, store.state.dance.value!.motion];
+    store.beginCurveDrag();
+    store.previewCurve(first(store), jointIndex('left_shoulder'), { tension: 1 });
+    expect(store.state.dance.value!.motion.quaternions).not.toEqual(before.quaternions);
+    store.discardCurveDrag();
+    expect(store.state.document.value).toBe(document);
+    expect(store.state.dance.value!.motion.quaternions).toEqual(before.quaternions);
+    store.previewCurve(0, elbow, { tension: 1 });
+    expect(store.state.document.value).toBe(document);
+  });
+
+  it('sets tension, and goes back to what was generated', async () => {
+    const { store } = await withCurves();
+    const interval = first(store);
+    store.changeCurve(interval, elbow, { tension: 0.7 });
+    store.changeCurve(interval, elbow, { bias: -0.2 });
+    expect(store.state.document.value.curveEdits).toEqual([
+      { from: expect.any(String), to: expect.any(String), track: 'left_elbow', tension: 0.7, bias: -0.2 },
+    ]);
+    const { shown, base } = curvesOnStage(store.state)!;
+    const at = interval * 3 * CHANNELS + rotationChannel(elbow);
+    expect(shown.shape[at]).toBeCloseTo(0.7, 6);
+    expect(base.shape[at]).toBe(0);
+    store.resetCurve(elbow, interval);
+    expect(store.state.document.value).not.toHaveProperty('curveEdits');
+  });
+
+  it('stays on its beats when the grid is moved, on fillers and on key poses', async () => {
+    const { store } = await withCurves();
+    const { anchors } = store.state.dance.value!.curves!;
+    const filler = anchors.findIndex((anchor, k) => typeof anchor === 'number' && anchor > 6 && k + 1 < anchors.length);
+    store.changeCurve(filler, elbow, { tension: 1 });
+    store.changeCurve(first(store), elbow, { tension: 1 });
+    const edits = store.state.document.value.curveEdits!;
+    for (const ripple of [true, false]) {
+      store.toggleRipple(ripple);
+      store.nudgeBeats(1, 'frame');
+      expect(store.state.document.value.curveEdits).toEqual(edits);
+    }
+    await store.generate();
+    const { shown, base } = curvesOnStage(store.state)!;
+    const changed = shown.shape.reduce((count, value, i) => count + (value === base.shape[i] ? 0 : 1), 0);
+    expect(changed).toBe(8);
+  });
+
+  it('goes with its key pose', async () => {
+    const { store } = await withCurves();
+    store.changeCurve(first(store), elbow, { tension: 1 });
+    store.deleteKeys(new Set([store.state.document.value.keyPoses[1].id]));
+    expect(store.state.document.value).not.toHaveProperty('curveEdits');
+    store.undo();
+    expect(store.state.document.value.curveEdits).toHaveLength(1);
+  });
+
+  it('is in a dance that is made anew, and in the one that is kept for the next visit', async () => {
+    const saved: { curves?: unknown; curveEdits?: readonly unknown[]; motion: Motion }[] = [];
+    const { store, services } = await withCurves();
+    services.storage.saveDance = async (dance) => void saved.push(dance);
+    store.changeCurve(first(store), elbow, { tension: 1 });
+    const { motion } = store.state.dance.value!;
+    expect(saved.at(-1)!.curveEdits).toHaveLength(1);
+    expect(saved.at(-1)!.motion).toBe(motion);
+    await store.generate();
+    await settled();
+    expect(store.state.dance.value!.motion.quaternions).toEqual(motion.quaternions);
+    expect(saved.at(-1)!.curves).toBeDefined();
+  });
+});
+
+describe('the interval in hand', () => {
+  it('is the one at the playhead until one is chosen', async () => {
+    const { store } = await withCurves();
+    const { times } = store.state.dance.value!.curves!;
+    store.seek(2.5);
+    const here = intervalInHand(store.state);
+    expect(times[here]).toBeLessThanOrEqual(2.5);
+    expect(times[here + 1]).toBeGreaterThan(2.5);
+    store.chooseCurveInterval(0);
+    expect(intervalInHand(store.state)).toBe(0);
+    store.chooseCurveInterval(999);
+    expect(intervalInHand(store.state)).toBe(times.length - 2);
+  });
+});

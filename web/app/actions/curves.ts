@@ -1,0 +1,232 @@
+/** The curves of a dance in the visitor's hands: changes are in the document, the dance on stage follows them at once. */
+import { effect, untracked } from '@preact/signals';
+import { beatCount } from '../../core/beat-count';
+import {
+  allTracks,
+  knotBefore,
+  sampleChannels,
+  sampleCurves,
+  type CurveDance,
+  type CurveTrack,
+} from '../../core/curves';
+import {
+  applyEdits,
+  findEdit,
+  intervalOf,
+  isBlank,
+  NO_EDITS,
+  rippleEdits,
+  SHAPE_NAMES,
+  trackName,
+  trackOf,
+  withEdit,
+  type CurveEdit,
+  type Triple,
+} from '../../core/curves-edit';
+import { MAX_CURVE_EDITS, type ProjectDocument } from '../../core/document';
+import type { Warp } from '../../core/grid-ripple';
+import type { BeatGrid, Motion } from '../../core/types';
+import type { Context } from '../context';
+import type { DanceCache } from '../dance-cache';
+import type { Dance, State } from '../state';
+import type { DanceActions } from './dance';
+
+/** With more changed curves than this all is sampled anew. */
+const FEW = 12;
+
+/** What a curve is changed by; what is left out stays. */
+export type CurveChange = Partial<Pick<CurveEdit, 'knots' | 'tension' | 'continuity' | 'bias'>>;
+
+/** The curves on stage with the visitor's changes; null where the dance has none. */
+export function curvesOnStage(state: State): { base: CurveDance; shown: CurveDance } | null {
+  const dance = state.dance.value;
+  if (!dance?.curves) return null;
+  return { base: dance.curves, shown: applyEdits(dance.curves, state.document.value.curveEdits ?? NO_EDITS) };
+}
+
+/** The interval in hand: the chosen one, else the one at the playhead. */
+export function intervalInHand(state: State): number {
+  const curves = state.dance.value?.curves;
+  if (!curves || curves.times.length < 2) return -1;
+  const last = curves.times.length - 2;
+  const chosen = state.curveInterval.value;
+  if (chosen !== null) return Math.min(chosen, last);
+  return Math.min(Math.max(0, knotBefore(curves.times, state.time.value)), last);
+}
+
+/** Changes to curves keep to their beats when the grid is another. */
+export function curvesOnGrid(document: ProjectDocument, before: BeatGrid | null, warp: Warp, after: BeatGrid | null) {
+  const { curveEdits } = document;
+  if (!curveEdits) return document;
+  const [from, to] = [beatCount(before), beatCount(after)];
+  const moved = rippleEdits(
+    curveEdits,
+    (beat) => from.time(beat),
+    warp,
+    (time) => to.of(time),
+  );
+  return moved === curveEdits ? document : { ...document, curveEdits: moved };
+}
+
+/** Actions on the curves of the dance. */
+export function curveActions(context: Context, dances: DanceActions, cache: DanceCache) {
+  const { state, history } = context;
+  let dragging = false;
+
+  // The dance on stage has the changes that the document says, also after undo, or when a former dance comes back.
+  effect(() => {
+    const dance = state.dance.value;
+    const edits = state.document.value.curveEdits ?? NO_EDITS;
+    if (!dance?.curves || dance.curveEdits === edits) return;
+    untracked(() => {
+      state.dance.value = { ...dance, motion: reshaped(dance, edits), curveEdits: edits };
+      if (!history.capturing) rest();
+    });
+  });
+
+  /** Nothing is dragged any more: the dance is measured and kept. */
+  function rest(): void {
+    const dance = state.dance.value;
+    if (!dance?.curves) return;
+    if (dance.byDials) cache.remember(dance, state.song.value?.reference.hash ?? '');
+    dances.saveShown();
+    void dances.measureShown();
+  }
+
+  const place = (interval: number, track: CurveTrack) => {
+    const curves = state.dance.value?.curves;
+    if (!curves || interval < 0 || interval + 1 >= curves.times.length) return null;
+    const [from, to] = [curves.anchors[interval], curves.anchors[interval + 1]];
+    const edits = state.document.value.curveEdits ?? NO_EDITS;
+    const known = findEdit(edits, curves, interval, track);
+    return { edits, edit: known ?? ({ from, to, track: trackName(track) } satisfies CurveEdit) };
+  };
+
+  /** The document with a change of one curve. */
+  const changed = (document: ProjectDocument, edits: readonly CurveEdit[]): ProjectDocument => {
+    if (edits === (document.curveEdits ?? NO_EDITS)) return document;
+    const next: ProjectDocument = { ...document, curveEdits: edits };
+    if (edits.length === 0) delete next.curveEdits;
+    return next;
+  };
+
+  const fits = (edits: readonly CurveEdit[]): boolean => {
+    if (edits.length <= MAX_CURVE_EDITS) return true;
+    context.notify('info', `At most ${MAX_CURVE_EDITS} curves can be changed: set some back first.`);
+    return false;
+  };
+
+  const actions = {
+    /** The curve view under the timeline. */
+    toggleCurveView(open = !state.curvesOpen.value): void {
+      state.curvesOpen.value = open;
+      if (open && !state.dance.value?.curves) {
+        context.announce('There are no curves yet: choose editable curves in the Dance panel and generate.');
+      }
+    },
+
+    /** The joint whose curves are shown. */
+    showCurvesOf(track: CurveTrack): void {
+      state.curveTrack.value = track;
+      context.announce(`Curves of ${track === 'root' ? 'the way of the body' : trackName(track).replace('_', ' ')}.`);
+    },
+
+    /** The stretch between two key poses whose shape is in hand; null = the one at the playhead. */
+    chooseCurveInterval: (interval: number | null) => (state.curveInterval.value = interval),
+
+    /** A drag of a knot or a handle begins. */
+    beginCurveDrag(): void {
+      history.capture();
+      dragging = true;
+    },
+
+    /** The curve as it would be, live on the figure. */
+    previewCurve(interval: number, track: CurveTrack, change: CurveChange): void {
+      const here = place(interval, track);
+      if (!here || !dragging || !history.capturing) return;
+      const edits = withEdit(here.edits, merged(here.edit, change));
+      if (edits.length > MAX_CURVE_EDITS) return;
+      history.preview(changed(history.present, edits));
+      context.sync();
+    },
+
+    /** The drag ends where it is: one step of undo. */
+    commitCurveDrag(label = 'Edit curve'): void {
+      if (!dragging) return;
+      dragging = false;
+      history.commit(label);
+      context.sync();
+      rest();
+    },
+
+    /** The drag never happened. */
+    discardCurveDrag(): void {
+      if (!dragging) return;
+      dragging = false;
+      history.discard();
+      context.sync();
+    },
+
+    /** One change of a curve: one step of undo. */
+    changeCurve(interval: number, track: CurveTrack, change: CurveChange, label = 'Edit curve'): void {
+      const here = place(interval, track);
+      if (!here) return;
+      const edits = withEdit(here.edits, merged(here.edit, change));
+      if (fits(edits)) context.change(label, (document) => changed(document, edits));
+    },
+
+    /** The curve as it was generated, of one stretch; without an interval of the joint's whole dance. */
+    resetCurve(track: CurveTrack, interval?: number): void {
+      const edits = state.document.value.curveEdits ?? NO_EDITS;
+      const here = interval === undefined ? null : place(interval, track);
+      const name = trackName(track);
+      const kept = here
+        ? withEdit(edits, { from: here.edit.from, to: here.edit.to, track: name })
+        : edits.filter((edit) => edit.track !== name);
+      if (kept.length === edits.length) return;
+      context.change('Set curve back', (document) => changed(document, kept));
+      context.announce('The curve is as it was generated.');
+    },
+  };
+  return actions;
+}
+
+/** Actions on the curves of the dance. */
+export type CurveActions = ReturnType<typeof curveActions>;
+
+/** An edit with some of it changed; what says nothing any more is left out, so that equal edits are equal. */
+function merged(edit: CurveEdit, change: CurveChange): CurveEdit {
+  const all = { ...edit, ...change };
+  const { knots } = all;
+  const made: CurveEdit = { from: all.from, to: all.to, track: all.track };
+  if (knots?.some((triple: Triple) => triple.some((value) => value !== 0))) made.knots = knots;
+  for (const name of SHAPE_NAMES) if (all[name] !== undefined) made[name] = all[name];
+  return isBlank(made) ? { from: all.from, to: all.to, track: all.track } : made;
+}
+
+/** The motion of a dance of curves with other changes: only what they touch is sampled anew. */
+function reshaped(dance: Dance, edits: readonly CurveEdit[]): Motion {
+  const curves = dance.curves!;
+  const { motion } = dance;
+  const before = dance.curveEdits ?? NO_EDITS;
+  const known = new Set(before);
+  const now = new Set(edits);
+  const touched = [...before.filter((edit) => !now.has(edit)), ...edits.filter((edit) => !known.has(edit))];
+  const shaped = applyEdits(curves, edits);
+  if (touched.length > FEW) return sampleCurves(shaped, motion.fps, motion.frames);
+  const made: Motion = { ...motion, root: motion.root.slice(), quaternions: motion.quaternions.slice() };
+  const last = curves.times.length - 1;
+  for (const edit of touched) {
+    const interval = intervalOf(curves, edit);
+    const track = trackOf(edit.track);
+    if (interval < 0 || track === null) continue;
+    // A knot bends the curve up to the second knot away, and the shape of an interval that of its neighbours.
+    const start = Math.max(0, Math.floor(curves.times[Math.max(0, interval - 1)] * motion.fps));
+    const end = Math.ceil(curves.times[Math.min(last, interval + 2)] * motion.fps) + 1;
+    sampleChannels(shaped, made, [track], start, Math.min(motion.frames, end));
+  }
+  return made;
+}
+
+/** The tracks in the order of the menu. */
+export const CURVE_TRACKS: readonly CurveTrack[] = allTracks();
