@@ -8,6 +8,8 @@ from onnx import TensorProto, helper, numpy_helper
 
 # Matrices below this many numbers (embeddings of positions, biases, norms) gain nothing from 8 bits.
 SMALLEST_QUANTISED = 20_000
+# Of matrices that come one for each joint there are many, and all are small.
+SMALLEST_JOINT_QUANTISED = 2_000
 
 
 def output_axis(proto: onnx.ModelProto, name: str) -> int | None:

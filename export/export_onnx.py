@@ -29,7 +29,7 @@ import onnxruntime
 import torch
 from onnx import TensorProto, helper, numpy_helper
 
-from compress import SMALLEST_QUANTISED, output_axis, pack_six_bits, quantise, shorten_names, six_bit_constants, unpack_six_bits
+from compress import SMALLEST_JOINT_QUANTISED, SMALLEST_QUANTISED, output_axis, pack_six_bits, quantise, shorten_names, six_bit_constants, unpack_six_bits
 from model import INPUT_NAMES, OUTPUT_NAME, KeyPoseDancer, ModelConfig
 from samples import synthetic_inputs
 from shapes import name_lengths
@@ -128,6 +128,17 @@ def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
             continue
         axis = output_axis(proto, tensor.name)
         stored = tensor.name + "_stored"
+        if form == "q8" and axis == 1 and values.ndim == 3 and values.size >= SMALLEST_JOINT_QUANTISED:
+            # One matrix for each joint: a scale for each joint and output.
+            rows = values.transpose(0, 2, 1).reshape(-1, values.shape[1])
+            numbers, scale = quantise(rows, 0)
+            numbers = np.ascontiguousarray(numbers.reshape(values.shape[0], values.shape[2], values.shape[1]).transpose(0, 2, 1))
+            kept.append(numpy_helper.from_array(scale.astype(np.float16).reshape(values.shape[0], 1, -1), tensor.name + "_scale_stored"))
+            kept.append(numpy_helper.from_array(numbers, stored))
+            unpack.append(helper.make_node("Cast", [tensor.name + "_scale_stored"], [tensor.name + "_scale"], to=TensorProto.FLOAT))
+            unpack.append(helper.make_node("Cast", [stored], [tensor.name + "_float"], to=TensorProto.FLOAT))
+            unpack.append(helper.make_node("Mul", [tensor.name + "_float", tensor.name + "_scale"], [tensor.name]))
+            continue
         if form in ("q8", "q6") and axis is not None and values.ndim == 2 and values.size >= SMALLEST_QUANTISED:
             six = form == "q6"
             numbers, scale = quantise(values, axis, 31 if six else 127)

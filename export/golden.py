@@ -16,6 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+import curves
 import dance_metrics
 import metrics
 from export_onnx import compress, run_onnx, to_onnx, write_arrays
@@ -170,6 +171,39 @@ def measures() -> dict:
     }
 
 
+def curve_samples() -> dict:
+    """A short dance of Kochanek-Bartels curves on uneven keys, root and one joint's quaternion, and what it samples to."""
+    rng = torch.Generator().manual_seed(4)
+    times = torch.tensor([0.5, 1.1, 1.4, 2.6], dtype=torch.float64)
+    intervals = len(times) - 1
+    turns = axis_angle_to_quaternion(torch.randn(3 * intervals + 1, 1, 3, dtype=torch.float64, generator=rng) * 0.8)
+    turns = curves.align_signs(turns)[:, 0]
+    root = torch.randn(3 * intervals + 1, 3, dtype=torch.float64, generator=rng) * 0.3
+    knots = torch.cat([root, turns], 1)
+    keys, inner = knots[::3], knots[:-1].unflatten(0, (-1, 3))[:, 1:]
+    tcb = torch.rand(intervals, 3, 7, dtype=torch.float64, generator=rng) * 1.6 - 0.8
+    tcb[1, :, 0] = 0
+    at = torch.linspace(0.3, 2.8, 41, dtype=torch.float64)
+    made = curves.Curves(times, keys, inner, tcb)
+    values = curves.sample(made, at)
+    rows = curves.knot_rows(made)
+    arriving, leaving = curves.tangents(*rows)
+    return {
+        "tolerance": 1e-6,
+        "note": "7 channels: root x y z, quaternion x y z w of one joint (its samples scaled to length 1)",
+        "times": rounded(times),
+        "keys": rounded(keys),
+        "inner": rounded(inner),
+        "tensionContinuityBias": rounded(tcb),
+        "knotTimes": rounded(rows[0][:, 0]),
+        "arriving": rounded(arriving),
+        "leaving": rounded(leaving),
+        "at": rounded(at),
+        "root": rounded(values[:, :3]),
+        "quaternions": rounded(values[:, 3:] / values[:, 3:].norm(dim=-1, keepdim=True)),
+    }
+
+
 def tiny_model() -> KeyPoseDancer:
     """A model of random weights, small enough for tests."""
     torch.manual_seed(11)
@@ -198,6 +232,7 @@ SECTIONS = {
     "kinematics": "kinematics",
     "positional": "positional",
     "metrics": "measures",
+    "curves-samples": "curve_samples",
 }
 
 

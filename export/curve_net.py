@@ -1,0 +1,165 @@
+"""Stage 2 of DanceFormer: the curves between key poses (paper B, section 4.2). One interval is one item of the batch.
+
+The paper decodes interval after interval from the ones before. Here an interval sees the key poses on either side of its own two instead:
+all intervals of a song are one batch, and a change of one key pose changes at most four of them.
+
+Decoder tokens are the two key poses, each told with the other one and with its neighbour outside; the music is eight moments of the interval. The inner knots are a turn
+each from the SLERP of the two key poses at 1/3 and 2/3, so that an untrained network gives the interpolation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+import torch
+from torch import Tensor, nn
+
+from dantrans import FROM_TREE, TREE_ORDER, DanTransConfig, DecoderLayer, JointLinear, WaveEncoder, body_module
+from inbetween import level_heading
+from rotation import quaternion_to_matrix
+from skeleton import forward_kinematics
+from spec import JOINT_COUNT, SPEC, TOE_HEIGHT, TOES
+from suggest import turn_columns
+
+PART = SPEC["danceformer"]
+STEPS: int = PART["curve"]["intervalSteps"]
+FEATURES = len(PART["featureNames"])
+VALUES: list[str] = PART["curve"]["values"]
+FRACTIONS: tuple[float, float] = tuple(PART["curve"]["innerFractions"])
+INPUTS = ("keys", "key_mask", "seconds", "music")
+OUTPUTS = ("curves", "root")
+
+TOKENS = 2
+SHARED = 3 * 2 + 2  # three lengths in two forms, two flags
+JOINT_INPUTS = 6 + 6 + 6 + SHARED + TOKENS
+LARGEST_SHAPE = 0.9  # of tension, continuity, bias
+LARGEST_TURN = 1.5  # radians that an inner knot may leave the SLERP by
+
+
+@dataclass
+class CurveConfig:
+    """Sizes."""
+
+    net: DanTransConfig = field(default_factory=DanTransConfig)
+
+    def __post_init__(self) -> None:
+        if isinstance(self.net, dict):
+            self.net = DanTransConfig(**self.net)
+
+    def as_dict(self) -> dict:
+        return asdict(self)
+
+
+def product(a: Tensor, b: Tensor) -> Tensor:
+    """Quaternion product a b [..., 4], x y z w, as plain multiplications."""
+    ax, ay, az, aw = a.split(1, -1)
+    bx, by, bz, bw = b.split(1, -1)
+    return torch.cat(
+        [
+            aw * bx + ax * bw + ay * bz - az * by,
+            aw * by - ax * bz + ay * bw + az * bx,
+            aw * bz + ax * by - ay * bx + az * bw,
+            aw * bw - ax * bx - ay * by - az * bz,
+        ],
+        -1,
+    )
+
+
+def slerp_at(a: Tensor, b: Tensor, fraction: float) -> Tensor:
+    """SLERP of quaternions [..., 4] whose signs agree already."""
+    dot = (a * b).sum(-1, keepdim=True).clamp(-1, 0.9995)
+    angle = torch.acos(dot)
+    sine = torch.sin(angle).clamp_min(1e-6)
+    mixed = a * (torch.sin((1 - fraction) * angle) / sine) + b * (torch.sin(fraction * angle) / sine)
+    return mixed / (mixed * mixed).sum(-1, keepdim=True).clamp_min(1e-12).sqrt()
+
+
+def small_turn(vector: Tensor) -> Tensor:
+    """Half rotation vector [..., 3] -> unit quaternion [..., 4] along (v, 1): smooth, and no sine in the graph."""
+    whole = torch.cat([vector, vector[..., :1] * 0 + 1], -1)
+    return whole / (whole * whole).sum(-1, keepdim=True).sqrt()
+
+
+def ground_height(matrices: Tensor) -> Tensor:
+    """Pelvis height [...] at which the lower toe joint of a pose [..., 24, 3, 3] stands where a standing figure's does."""
+    return TOE_HEIGHT - forward_kinematics(matrices)[..., TOES, 1].amin(-1)
+
+
+class CurveNet(nn.Module):
+    """keys [B, 4, 24, 4], key_mask [B, 2], seconds [B, 3], music [B, 8, 53] -> curves [B, 99, 5], root [B, 2, 3]."""
+
+    def __init__(self, config: CurveConfig) -> None:
+        super().__init__()
+        self.config = config
+        net = config.net
+        width = net.width
+        self.wave = WaveEncoder(net, FEATURES)
+        self.places = nn.Parameter(torch.randn(STEPS, net.music_width) * 0.1)
+        self.wave_mask = nn.Parameter(torch.zeros(net.music_heads, STEPS, STEPS))
+        self.enter = JointLinear(JOINT_COUNT, JOINT_INPUTS, width)
+        self.embed = body_module(net, 1)
+        self.layers = nn.ModuleList(DecoderLayer(net) for _ in range(net.layers))
+        learned = net.attention == "learned"
+        self.mask = nn.ParameterList(nn.Parameter(torch.zeros(JOINT_COUNT, 1, TOKENS, TOKENS), requires_grad=learned) for _ in self.layers)
+        self.music_mask = nn.ParameterList(nn.Parameter(torch.zeros(JOINT_COUNT, 1, TOKENS, STEPS), requires_grad=learned) for _ in self.layers)
+        self.close = body_module(net, 1)
+        self.join = JointLinear(JOINT_COUNT, 2 * width, width)
+        self.turns = JointLinear(JOINT_COUNT, width, 3 * 2 + 3)
+        self.path = nn.Linear(JOINT_COUNT * width, 2 + 3 * 2 + 3 * 3)
+        for last in (self.turns, self.path):
+            nn.init.zeros_(last.weight)
+            nn.init.zeros_(last.bias)
+
+    def forward(self, keys: Tensor, key_mask: Tensor, seconds: Tensor, music: Tensor) -> tuple[Tensor, Tensor]:
+        matrices = quaternion_to_matrix(keys)  # [B, 4, 24, 3, 3]
+        sine, cosine = level_heading(matrices[:, 1, 0, :, 2])
+        columns = matrices[..., :2].transpose(-1, -2).flatten(-2)  # [B, 4, 24, 6]
+        pelvis = turn_columns(columns[:, :, 0], -sine[:, None], cosine[:, None])
+        columns = torch.cat([pelvis[:, :, None], columns[:, :, 1:]], 2)
+        x = self._decode(columns, key_mask, seconds, music)  # [J, B, D]
+        turns = self.turns(x)[FROM_TREE].transpose(0, 1)  # [B, J, 9]
+        first, second, shape = turns.split((3, 3, 3), -1)
+        start, end = keys[:, 1], keys[:, 2]
+        end = end * torch.where((start * end).sum(-1, keepdim=True) < 0, -1.0, 1.0)
+        knots = []
+        for fraction, turn in zip(FRACTIONS, (first, second)):
+            turn = torch.tanh(turn) * (LARGEST_TURN / 2)
+            # The pelvis is turned about axes of the heading, which is not the world's: its turn comes first, in its own frame, as every joint's.
+            knots.append(product(slerp_at(start, end, fraction), small_turn(turn)))
+        shape = torch.tanh(shape) * LARGEST_SHAPE
+        rotations = torch.cat([shape[:, :, None].expand(-1, -1, 4, -1), torch.stack(knots, -1)], -1).flatten(1, 2)  # [B, 96, 5]
+        path, offsets, path_shape = self.path(x.transpose(0, 1).flatten(1)).split((2, 6, 9), -1)
+        length = seconds[:, 1:2]
+        moved = self._to_world(torch.stack([path[:, :1] * length, length * 0, path[:, 1:] * length], -1), sine, cosine)[:, 0]
+        offsets = self._to_world(offsets.unflatten(-1, (2, 3)) * length[..., None], sine, cosine)  # [B, 2, 3]
+        path_shape = torch.tanh(path_shape.unflatten(-1, (3, 3))) * LARGEST_SHAPE
+        root_curves = torch.cat([path_shape, offsets.transpose(1, 2)], -1)  # [B, 3, 5]
+        heights = ground_height(matrices[:, 1:3])  # [B, 2]
+        zero = heights[:, :1] * 0
+        root = torch.stack([torch.cat([zero, heights[:, :1], zero], 1), torch.cat([moved[:, :1], heights[:, 1:], moved[:, 2:]], 1)], 1)
+        return torch.cat([root_curves, rotations], 1), root
+
+    def _decode(self, columns: Tensor, key_mask: Tensor, seconds: Tensor, music: Tensor) -> Tensor:
+        """Four poses in the heading of the second [B, 4, 24, 6] -> features of the interval [J, B, D]."""
+        joints = columns[:, :, TREE_ORDER].permute(2, 0, 1, 3)  # [J, B, 4, 6]
+        own = joints[:, :, 1:3]
+        across = joints[:, :, 2:3] - joints[:, :, 1:2]
+        across = torch.cat([across, across], 2)
+        outside = torch.cat([joints[:, :, 1:2] - joints[:, :, :1], joints[:, :, 3:] - joints[:, :, 2:3]], 2)
+        shared = torch.cat([seconds, 1 / (seconds + 0.2), key_mask], -1)  # [B, 8]
+        shared = shared[None, :, None].expand(JOINT_COUNT, -1, TOKENS, -1)
+        which = torch.eye(TOKENS, device=columns.device)[None, None] + shared[..., :1] * 0
+        x = self.enter(torch.cat([own, across, outside, shared, which], -1).flatten(1, 2))
+        x = self.embed(x).unflatten(1, (-1, TOKENS))
+        heard = self.wave.encode(self.wave.embed(music) + self.places, self.wave_mask)
+        for layer, mask, music_mask in zip(self.layers, self.mask, self.music_mask):
+            x = layer(x, mask, heard, music_mask)
+        x = self.join(torch.cat([x[:, :, 0], x[:, :, 1]], -1))
+        return x + self.close(x)
+
+    @staticmethod
+    def _to_world(vectors: Tensor, sine: Tensor, cosine: Tensor) -> Tensor:
+        """[B, n, 3] in the heading of the start -> world axes."""
+        x, y, z = vectors.split(1, -1)
+        s, c = sine[:, None], cosine[:, None]
+        return torch.cat([c * x + s * z, y, c * z - s * x], -1)
