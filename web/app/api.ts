@@ -38,6 +38,7 @@ export interface PosebeatApi {
    * `song: true` a zip with the song's own bytes inside (both open again as `.posebeat`).
    */
   exportAs(format: ExportFormat, options?: MotionFileOptions & { song?: boolean }): Promise<Blob>;
+  /** The project as an address: opening it shows the same dance. Rejects when it would be too long for one. */
   shareLink(): Promise<string>;
   /** A copy of the project document. */
   document(): ProjectDocument;
@@ -93,7 +94,7 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       if (format === 'curves') throw new Error('Export as curves is not available yet: use "glb".');
       throw new Error(`There is no export format "${String(format)}": use bvh, glb, npz, json or project.`);
     },
-    shareLink: () => Promise.reject(new Error('Share links are not available yet: use exportAs("project").')),
+    shareLink: async () => store.shareLink(location.href),
     document: () => structuredClone(state.document.value),
   };
 }

@@ -105,6 +105,11 @@ export interface Storage {
   saveSong(hash: string, song: Blob): Promise<void>;
   loadSong(hash: string): Promise<Blob | null>;
   load(): Promise<{ document: unknown; dance: SavedDance | null } | null>;
+  /** Keeps a project apart from the one that is saved; the oldest go. Resolves with how many there are. */
+  setAside?(document: ProjectDocument): Promise<number>;
+  /** Takes the project that was put aside last; null where there is none. */
+  takeAside?(): Promise<{ document: unknown; left: number } | null>;
+  countAside?(): Promise<number>;
   /** Asks the browser not to clear this away by itself. Resolves with its answer. */
   persist?(): Promise<boolean>;
 }

@@ -277,6 +277,14 @@ export function createState() {
     notices: signal<Notice[]>([]),
     /** Another tab has this project: what is changed here is not kept. */
     elsewhere: signal(false),
+    /** The project of a link, as it was opened; null = none was. */
+    guest: signal<ProjectDocument | null>(null),
+    /** The song that the dance of a link is to, while another stands in for it. */
+    wanted: signal<SongReference | null>(null),
+    /** How many projects were put aside in this browser when a link was opened. */
+    aside: signal(0),
+    /** The panel with the link. */
+    shareOpen: signal(false),
     /** Read out by screen readers; not shown. */
     announcement: signal(''),
     ready: signal(false),

@@ -16,10 +16,12 @@ interface KeptSong {
 }
 
 interface Schema extends DBSchema {
-  work: { key: 'document' | 'dance'; value: unknown };
+  work: { key: 'document' | 'dance' | 'aside'; value: unknown };
   songs: { key: string; value: KeptSong };
 }
 
+/** Projects kept aside; the oldest go first. */
+const MAX_ASIDE = 5;
 /** Songs kept for undo and the next visit; the least recently used go first. */
 const MAX_SONGS = 4;
 
@@ -54,11 +56,17 @@ export function createStorage(name = 'posebeat', mayWrite: () => boolean = () =>
   };
 
   /** Commits at once: a transaction that waits to commit by itself is undone when its page goes away. */
-  async function putWork(key: 'document' | 'dance', value: unknown): Promise<void> {
+  async function putWork(key: 'document' | 'dance' | 'aside', value: unknown): Promise<void> {
     const transaction = (ready ?? (await database())).transaction('work', 'readwrite');
     const put = transaction.store.put(value, key);
     transaction.commit();
     await Promise.all([put, transaction.done]);
+  }
+
+  /** Projects that were put aside, the last one last. */
+  async function aside(): Promise<unknown[]> {
+    const list = await (await database()).get('work', 'aside');
+    return Array.isArray(list) ? (list as unknown[]) : [];
   }
 
   /** Lets go of all songs but the `keep` most recently used. */
@@ -114,6 +122,18 @@ export function createStorage(name = 'posebeat', mayWrite: () => boolean = () =>
       const dance = (await db.get('work', 'dance')) as SavedDance | undefined;
       return { document, dance: dance ?? null };
     },
+    async setAside(document) {
+      const list = [...(await aside()), document].slice(-MAX_ASIDE);
+      await putWork('aside', list);
+      return list.length;
+    },
+    async takeAside() {
+      const list = await aside();
+      if (list.length === 0) return null;
+      await putWork('aside', list.slice(0, -1));
+      return { document: list[list.length - 1], left: list.length - 1 };
+    },
+    countAside: async () => (await aside()).length,
     async persist() {
       const storage = navigator.storage as StorageManager | undefined;
       return (await storage?.persisted?.()) || ((await storage?.persist?.()) ?? false);

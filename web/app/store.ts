@@ -2,6 +2,7 @@
 import { batch, effect } from '@preact/signals';
 import { withoutOrphans } from '../core/curves-edit';
 import { createDocument, type ProjectDocument } from '../core/document';
+import { isLink } from '../core/formats/share-link';
 import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import { beatActions } from './actions/beats';
@@ -21,6 +22,7 @@ import { poseImportActions } from './actions/pose-import';
 import { pictureActions } from './actions/picture';
 import { projectActions } from './actions/project';
 import { rangeActions } from './actions/ranges';
+import { shareActions } from './actions/share';
 import { songActions } from './actions/song';
 import { tabActions } from './actions/tabs';
 import { tourActions } from './actions/tour';
@@ -94,6 +96,7 @@ export function createStore(services: Services, reporter: Reporter) {
   const songs = songActions(context, dance);
   const demo = demoActions(context, songs, dance);
   const project = projectActions(context, songs, demo, dance);
+  const share = shareActions(context, { songs, demo, dance, project });
   const tabs = tabActions(
     context,
     startAutosave(context, () => void project.saveProject(true)),
@@ -166,6 +169,9 @@ export function createStore(services: Services, reporter: Reporter) {
     ...poseImportActions(context, library, keys, pose),
     ...songs,
     ...project,
+    ...share,
+    /** Opens the page; with the end of an address that is a link, with its dance. */
+    start: (link = '') => project.start(isLink(link) ? () => share.openLink(link, true) : undefined),
     ...exportActions(context),
     ...demo,
     ...tabs,

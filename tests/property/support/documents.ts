@@ -22,6 +22,7 @@ export const key = fc.record(
     name: text(20),
     locked: fc.constant(true as const),
     strength: unit,
+    suggested: fc.constant(true as const),
   },
   { requiredKeys: ['rotations'] },
 );

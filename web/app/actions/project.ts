@@ -109,8 +109,11 @@ export function projectActions(context: Context, songs: SongActions, demo: DemoA
   });
 
   return {
-    /** Opens the page: the visitor's last work, else the demo. */
-    async start(): Promise<void> {
+    /**
+     * Opens the page: the visitor's last work, else the demo.
+     * @param instead - Opens something else (a link) where it can; resolves with whether it did.
+     */
+    async start(instead?: () => Promise<boolean>): Promise<void> {
       const [poses, seeds] = await Promise.allSettled([
         services.assets.poses(),
         services.assets.seeds(),
@@ -122,7 +125,7 @@ export function projectActions(context: Context, songs: SongActions, demo: DemoA
         context.notify('error', 'The pose library could not be loaded. Reload the page to try again.');
       }
       try {
-        if (!(await restore())) await demo.showDemo('first');
+        if (!(await instead?.()) && !(await restore())) await demo.showDemo('first');
       } catch (error) {
         context.notify('info', `The demo could not be shown (${messageOf(error)}). Drop a song to start.`);
       }

@@ -326,8 +326,8 @@ export function songActions(context: Context, dance: DanceActions) {
       return fetchSong(reference.url).catch(() => null);
     },
 
-    /** Opens this project as soon as its song is dropped. */
-    awaitSong(document: ProjectDocument): void {
+    /** Opens this project as soon as its song is dropped; null = no longer. */
+    awaitSong(document: ProjectDocument | null): void {
       waiting = document;
     },
 

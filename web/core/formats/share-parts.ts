@@ -7,7 +7,7 @@
  * 4. grid: tempo (number), beats a bar (byte), beats (times), bars (0 and every so many beats from an index; or 1 and times);
  * 5. dials: key strength, variation (numbers), seed (whole), starting clip (text);
  * 6. key poses: how many (whole); their times (0 and times; or, on the grid, 1 and steps in half beats); their ids; for each 1 byte
- *    (1 locked, 2 strength, 4 name) with what it announces; which of the different poses each one is (whole; a new one takes the
+ *    (1 locked, 2 strength, 4 name, 8 suggested) with what it announces; which of the different poses each one is (whole; a new one takes the
  *    next number); the different poses, 72 signed bytes each, pose by pose or number by number;
  * 7. ranges: how many; ids; each with start, end (numbers), takes (how many, ids, seed and variation each), chosen take (0 = none);
  * 8. changed curves as JSON (text), engine (byte), figure (text).
@@ -64,8 +64,7 @@ export function writeParts(out: ByteWriter, document: ProjectDocument, model: st
     avatar: avatar !== DEFAULT_AVATAR,
     byJoint,
   };
-  const names = Object.keys(FLAGS) as (keyof typeof FLAGS)[];
-  out.byte(names.reduce((sum, name) => sum + (has[name] ? FLAGS[name] : 0), 0));
+  out.byte(flagsOf(FLAGS, has));
   out.text(model);
   if (song) {
     out.text(song.name);
@@ -86,6 +85,11 @@ export function writeParts(out: ByteWriter, document: ProjectDocument, model: st
   if (has.curveEdits) out.text(JSON.stringify(curveEdits));
   if (engine) out.byte(ENGINES.indexOf(engine));
   if (has.avatar) out.text(avatar);
+}
+
+/** The sum of the bits of all that is there. */
+function flagsOf<Name extends string>(bits: Record<Name, number>, has: Record<Name, unknown>): number {
+  return (Object.keys(bits) as Name[]).reduce((sum, name) => sum + (has[name] ? bits[name] : 0), 0);
 }
 
 /**
@@ -207,7 +211,7 @@ function onBeats(times: readonly number[], grid: BeatGrid | null): number[] | nu
   return found.includes(-1) ? null : found;
 }
 
-const EXTRAS = { locked: 1, strength: 2, name: 4 } as const;
+const EXTRAS = { locked: 1, strength: 2, name: 4, suggested: 8 } as const;
 
 function writeKeys(out: ByteWriter, keys: readonly KeyPose[], grid: BeatGrid | null, byJoint: boolean): void {
   out.whole(keys.length);
@@ -218,12 +222,9 @@ function writeKeys(out: ByteWriter, keys: readonly KeyPose[], grid: BeatGrid | n
   else out.times(times);
   const ids = keys.map(({ id }) => id);
   writeIds(out, ids, 'k');
-  for (const { locked, strength, name } of keys) {
-    out.byte(
-      (locked ? EXTRAS.locked : 0) +
-        (strength === undefined ? 0 : EXTRAS.strength) +
-        (name === undefined ? 0 : EXTRAS.name),
-    );
+  for (const { locked, strength, name, suggested } of keys) {
+    const has = { locked, strength: strength !== undefined, name: name !== undefined, suggested };
+    out.byte(flagsOf(EXTRAS, has));
     if (strength !== undefined) out.number(strength);
     if (name !== undefined) out.text(name);
   }
@@ -255,6 +256,7 @@ function readKeys(from: ByteReader, grid: BeatGrid | null | { beats: number[] },
       ...(flags & EXTRAS.locked ? { locked: true } : {}),
       ...(flags & EXTRAS.strength ? { strength: from.number() } : {}),
       ...(flags & EXTRAS.name ? { name: from.text() } : {}),
+      ...(flags & EXTRAS.suggested ? { suggested: true } : {}),
     };
   });
   let size = 0;
