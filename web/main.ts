@@ -2,7 +2,9 @@
 import { h, render } from 'preact';
 import { createApi } from './app/api';
 import { createAssets } from './app/assets';
+import { answerMessages, embedWish, noStorage, type Frame } from './app/embed';
 import { createEngine } from './app/engine';
+import { followAddress } from './app/link-address';
 import { createListener } from './app/listener';
 import { createReporter } from './app/report-client';
 import { createStorage } from './app/storage';
@@ -10,7 +12,8 @@ import { createStore } from './app/store';
 import { createTabs } from './app/tabs';
 import { Player } from './audio/player';
 import { App } from './ui/App';
-import { bindShortcuts } from './ui/shortcuts';
+import { EmbedApp } from './ui/share/EmbedApp';
+import { bindShortcuts, SHORTCUTS } from './ui/shortcuts';
 import { Thumbnails } from './ui/thumbs';
 import type { Backend } from './workers/protocol';
 import './style.css';
@@ -23,18 +26,21 @@ import './style-pose.css';
 import './style-library.css';
 import './style-report.css';
 import './style-project.css';
+import './style-share.css';
 import './style-phone.css';
 
 const asked = new URLSearchParams(location.search).get('backend');
 const forcedBackend: Backend | undefined = asked === 'wasm' || asked === 'webgpu' ? asked : undefined;
 
-const tabs = createTabs();
+const { embedded, origin } = embedWish(location.search);
+const tabs = embedded ? undefined : createTabs();
 const store = createStore(
   {
     player: new Player(),
     listener: createListener(),
     engine: createEngine((model) => store.modelMoved(model)),
-    storage: createStorage('posebeat', () => tabs.writes.value),
+    // The dance of somebody's link takes no place of the visitor's own work until it is changed.
+    storage: tabs ? createStorage('posebeat', () => tabs.writes.value && !store.isGuest.value) : noStorage(),
     tabs,
     assets: createAssets(document.baseURI),
     forcedBackend,
@@ -43,17 +49,29 @@ const store = createStore(
 );
 const thumbnails = new Thumbnails();
 
-window.posebeat = createApi(store, store.start());
-void store.loadOwnPoses();
-// Another tab may have saved some.
-window.addEventListener('focus', () => void store.loadOwnPoses());
-bindShortcuts(store, window);
+window.posebeat = createApi(store, store.start(location.hash));
+bindShortcuts(store, window, embedded ? SHORTCUTS.filter(({ group }) => group === 'Play') : SHORTCUTS);
 for (const gesture of ['pointerdown', 'keydown'])
   window.addEventListener(gesture, () => store.unlock(), { capture: true });
-render(h(App, { store, thumbnails }), document.getElementById('app')!);
 
-// Pictures wait until the stage has had its first frames.
-void store.whenReady().then(async () => {
+/** The page inside another one: nothing to be kept, nothing to be edited. */
+function openEmbedded(): void {
+  render(h(EmbedApp, { store }), document.getElementById('app')!);
+  answerMessages(window.posebeat, window as unknown as Frame, origin);
+}
+
+async function openWhole(): Promise<void> {
+  void store.loadOwnPoses();
+  // Another tab may have saved some.
+  window.addEventListener('focus', () => void store.loadOwnPoses());
+  void store.countAside();
+  followAddress(store, window);
+  render(h(App, { store, thumbnails }), document.getElementById('app')!);
+  // Pictures wait until the stage has had its first frames.
+  await store.whenReady();
   const { createThumbnailer } = await import('./scene/thumbnails');
   thumbnails.connect(createThumbnailer(), () => store.whenCalm());
-});
+}
+
+if (embedded) openEmbedded();
+else void openWhole();

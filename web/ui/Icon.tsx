@@ -62,8 +62,10 @@ import more from 'lucide-static/icons/ellipsis.svg?raw';
 import rename from 'lucide-static/icons/text-cursor-input.svg?raw';
 import upload from 'lucide-static/icons/upload.svg?raw';
 import locate from 'lucide-static/icons/locate-fixed.svg?raw';
+import share from 'lucide-static/icons/share-2.svg?raw';
 
 const ICONS = {
+  share,
   bookmark,
   more,
   rename,

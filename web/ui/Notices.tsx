@@ -1,4 +1,5 @@
 import { Icon } from './Icon';
+import { WantedSong } from './share/WantedSong';
 import { useStore } from './store-context';
 
 /** Messages to the visitor; errors stay until dismissed. */
@@ -16,6 +17,7 @@ export function Notices() {
             </button>
           </div>
         )}
+        <WantedSong />
         {store.state.notices.value.map(({ id, kind, text, action }) => (
           <div key={id} class={`notice ${kind}`} role={kind === 'error' ? 'alert' : 'status'}>
             <Icon name={kind === 'error' ? 'warning' : 'info'} />

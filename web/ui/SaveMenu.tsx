@@ -10,7 +10,7 @@ const MENU_ID = 'project-menu';
 export function SaveMenu() {
   const store = useStore();
   const menu = useRef<HTMLDivElement>(null);
-  const { document, song } = store.state;
+  const { document, song, aside } = store.state;
   const then = (run: () => void) => () => {
     menu.current?.hidePopover();
     run();
@@ -42,8 +42,18 @@ export function SaveMenu() {
           hint="A small file; opening it asks for the song"
           onClick={then(() => void store.saveProject(false))}
         />
+        <Entry
+          icon="share"
+          text="Share as a link"
+          hint="The whole dance in an address"
+          shortcut="share"
+          onClick={then(() => store.toggleShare(true))}
+        />
         <hr />
         <Entry icon="folder" text="Open a project" shortcut="open" onClick={then(() => chooseProject(store))} />
+        {aside.value > 0 && (
+          <Entry icon="undo" text="Back to the project before the link" onClick={then(() => void store.openAside())} />
+        )}
         {!song.value?.demo && <Entry icon="play" text="Show the demo" onClick={then(() => void store.openDemo())} />}
       </div>
     </>

@@ -2,6 +2,7 @@ import { useStore } from './store-context';
 import { chooseFile, chooseProject } from './files';
 import { Icon } from './Icon';
 import { SaveMenu } from './SaveMenu';
+import { Share } from './share/SharePanel';
 import { tip } from './shortcuts';
 
 /** Name of the song, undo, project, help. */
@@ -67,6 +68,7 @@ export function TopBar() {
         <Icon name="folder" />
       </button>
       <SaveMenu />
+      <Share />
       <button
         type="button"
         class="tool"

@@ -285,6 +285,14 @@ export const SHORTCUTS: readonly Shortcut[] = [
     run: (store) => chooseProject(store),
   },
   {
+    id: 'share',
+    keys: ['Shift+S'],
+    label: 'Share this dance as a link',
+    group: 'Project',
+    when: (store) => !posing(store),
+    run: (store) => store.toggleShare(),
+  },
+  {
     id: 'generate',
     keys: ['G'],
     label: 'Generate the dance',
@@ -417,8 +425,8 @@ export function tip(id: string, text?: string): string {
   return `${text ?? shortcut.label} (${keyText(shortcut.keys[0])})`;
 }
 
-/** Binds the table to a page. Returns the way to stop that. */
-export function bindShortcuts(store: Store, target: Window): () => void {
+/** Binds the table, or a part of it, to a page. Returns the way to stop that. */
+export function bindShortcuts(store: Store, target: Window, table = SHORTCUTS): () => void {
   const listener = (event: KeyboardEvent) => {
     if (event.defaultPrevented) return;
     const element = event.target as HTMLElement;
@@ -426,7 +434,7 @@ export function bindShortcuts(store: Store, target: Window): () => void {
     // Space and Enter belong to a focused control; arrows are never in the table.
     const pressing =
       (event.key === ' ' || event.key === 'Enter') && element.matches?.('button, a, summary, input, [role=tab]');
-    for (const shortcut of SHORTCUTS) {
+    for (const shortcut of table) {
       if ((typing || pressing) && !shortcut.everywhere) continue;
       if (!shortcut.keys.some((combo) => matches(event, combo))) continue;
       if (shortcut.when && !shortcut.when(store)) continue;
