@@ -65,6 +65,8 @@ export function startPoseDrag(
   };
   const up = (next: PointerEvent) => {
     if (next.pointerId !== pointerId) return;
+    // Alt counts as it is when the pose is let go.
+    if (next.type === 'pointerup') place(next.clientX, next.clientY, next.altKey);
     const time = dropTime.value;
     const dropped = ghost !== null && time !== null && next.type === 'pointerup';
     stop();

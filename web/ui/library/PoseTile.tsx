@@ -21,12 +21,12 @@ interface Props {
 /** One pose to drag or to add; what else can be done with it is in its menu. */
 export function PoseTile({ pose, tabbable, renaming, onFocus, onMenu, onRename }: Props) {
   const store = useStore();
-  const place = (element: HTMLElement) => {
+  const place = (element: HTMLElement, exact: boolean) => {
     if (store.state.duration.value === 0) {
       store.notify('info', 'Drop a song first: poses are placed on its beats.');
       return;
     }
-    const id = store.addKey(pose.rotations, store.state.time.value, { name: pose.name });
+    const id = store.addKey(pose.rotations, store.state.time.value, { name: pose.name, exact });
     flyToLane(store, element, id);
   };
   const onKeyDown = (event: KeyboardEvent & { currentTarget: HTMLElement }) => {
@@ -45,7 +45,7 @@ export function PoseTile({ pose, tabbable, renaming, onFocus, onMenu, onRename }
         tabIndex={tabbable ? 0 : -1}
         aria-label={`${pose.name}: add at the playhead`}
         aria-keyshortcuts="Enter Shift+F10"
-        title={`${pose.name}. Drag it onto the timeline, or click to add it at the playhead’s nearest beat.`}
+        title={`${pose.name}. Drag it onto the timeline, or click to add it at the playhead’s nearest beat (with Alt exactly there).`}
         onFocus={onFocus}
         onKeyDown={onKeyDown}
         onPointerDown={(event) => startPoseDrag(event, pose, store)}
@@ -56,7 +56,7 @@ export function PoseTile({ pose, tabbable, renaming, onFocus, onMenu, onRename }
           if ((event as MouseEvent as PointerEvent).pointerType === 'mouse') onMenu(event.currentTarget);
         }}
         onClick={(event) => {
-          if (!event.currentTarget.dataset.dragged) place(event.currentTarget);
+          if (!event.currentTarget.dataset.dragged) place(event.currentTarget, event.altKey);
         }}
       >
         <PosePicture rotations={pose.rotations} />
