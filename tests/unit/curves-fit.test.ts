@@ -34,12 +34,12 @@ describe('curves that follow a dance', () => {
     a.root.forEach((value, i) => expect(value).toBeCloseTo(b.root[i], 2));
   });
 
-  it('come within a quarter of a degree and two millimetres of a smooth dance', () => {
+  it('come within a quarter of a degree and three millimetres of a smooth dance', () => {
     const made = emptyCurves(times, 91 / 30);
     followMotion(made, motion, all(7, false));
     const sampled = sampleCurves(made, 30);
     expect(turnError(sampled.quaternions, motion.quaternions)).toBeLessThan((0.25 * Math.PI) / 180);
-    sampled.root.forEach((value, i) => expect(Math.abs(value - motion.root[i])).toBeLessThan(2e-3));
+    sampled.root.forEach((value, i) => expect(Math.abs(value - motion.root[i])).toBeLessThan(3e-3));
   });
 
   it('leave exact key poses as they are', () => {

@@ -35,9 +35,10 @@ export interface PosebeatApi {
   report(): DanceReport;
   /**
    * A file. `bvh`, `glb`, `npz` (SMPL: AIST++ and AMASS names) and `json` hold the dance on stage; `project` is JSON text, or with
-   * `song: true` a zip with the song's own bytes inside (both open again as `.posebeat`).
+   * `song: true` a zip with the song's own bytes inside (both open again as `.posebeat`). `curves` is the dance of engine "curves": our
+   * JSON, or with `as: 'glb'` an animation of cubic splines.
    */
-  exportAs(format: ExportFormat, options?: MotionFileOptions & { song?: boolean }): Promise<Blob>;
+  exportAs(format: ExportFormat, options?: MotionFileOptions & { song?: boolean; as?: 'json' | 'glb' }): Promise<Blob>;
   /** The project as an address: opening it shows the same dance. Rejects when it would be too long for one. */
   shareLink(): Promise<string>;
   /** A copy of the project document. */
@@ -91,8 +92,8 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       if ((MOTION_FORMATS as readonly string[]).includes(format)) {
         return store.exportMotion(format as MotionFormat, options);
       }
-      if (format === 'curves') throw new Error('Export as curves is not available yet: use "glb".');
-      throw new Error(`There is no export format "${String(format)}": use bvh, glb, npz, json or project.`);
+      if (format === 'curves') return store.exportCurves(options.as);
+      throw new Error(`There is no export format "${String(format)}": use bvh, glb, npz, json, curves or project.`);
     },
     shareLink: async () => store.shareLink(location.href),
     document: () => structuredClone(state.document.value),

@@ -168,12 +168,15 @@ export function followMotion(curves: CurveDance, target: Motion, exact: readonly
     }
     if (largest < CLOSE) continue;
     bases.forEach((basis, c) => add(channel + c, solveKnots(basis, rests[c], keys)));
-    for (let k = 0; k < count; k++) {
-      if (exact[k]) continue;
-      const q = curves.keys.subarray(k * CHANNELS + channel, k * CHANNELS + channel + 4);
-      q.set(unit(q[0], q[1], q[2], q[3]));
-    }
+    for (let k = 0; k < count; k++) if (!exact[k]) normalise(curves.keys, k, channel);
+    for (let row = 0; row < (count - 1) * INNER_KNOTS; row++) normalise(curves.inner, row, channel);
   }
+}
+
+/** Files want unit quaternions at their keys. */
+function normalise(knots: Float32Array, row: number, channel: number): void {
+  const q = knots.subarray(row * CHANNELS + channel, row * CHANNELS + channel + 4);
+  q.set(unit(q[0], q[1], q[2], q[3]));
 }
 
 /** A single key knot has no curve: it only takes the place of the root. */

@@ -31,7 +31,7 @@ export interface CurveDance {
   anchors: CurveAnchor[];
   /** [K, 99]: the key knots; quaternions are unit ones, with signs that run on from knot to knot. */
   keys: Float32Array;
-  /** [K - 1, 2, 99]: the inner knots; their quaternions need not be unit ones. */
+  /** [K - 1, 2, 99]: the inner knots, unit quaternions too. */
   inner: Float32Array;
   /** [K - 1, 2]: where the inner knots are, as shares of the way from key knot to key knot. */
   shares: Float32Array;

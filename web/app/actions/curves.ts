@@ -26,8 +26,11 @@ import {
 import { MAX_CURVE_EDITS, type ProjectDocument } from '../../core/document';
 import type { Warp } from '../../core/grid-ripple';
 import type { BeatGrid, Motion } from '../../core/types';
-import type { Context } from '../context';
+import { writeCurvesGlb } from '../../core/formats/curves-glb';
+import { writeCurvesJson } from '../../core/formats/curves-json';
+import { messageOf, type Context } from '../context';
 import type { DanceCache } from '../dance-cache';
+import { fileName, saveFile } from '../download';
 import type { Dance, State } from '../state';
 import type { DanceActions } from './dance';
 
@@ -186,6 +189,31 @@ export function curveActions(context: Context, dances: DanceActions, cache: Danc
       if (kept.length === edits.length) return;
       context.change('Set curve back', (document) => changed(document, kept));
       context.announce('The curve is as it was generated.');
+    },
+    /**
+     * The curves of the dance on stage, changes included, as a file: our JSON, or a GLB animation of cubic splines.
+     * @throws Error when the dance on stage has no curves
+     */
+    exportCurves(as: 'json' | 'glb' = 'json'): Blob {
+      if (as !== 'json' && as !== 'glb') throw new Error('as must be "json" or "glb".');
+      const curves = curvesOnStage(state)?.shown;
+      if (!curves) throw new Error('This dance has no curves: generate it with the engine "curves" first.');
+      const name = state.document.value.song?.name ?? 'dance';
+      return as === 'json'
+        ? new Blob([writeCurvesJson(curves)], { type: 'application/json' })
+        : new Blob([writeCurvesGlb(curves, name)], { type: 'model/gltf-binary' });
+    },
+
+    /** Saves the curves as a file for the visitor to keep; what is wrong becomes a notice. */
+    saveCurves(as: 'json' | 'glb'): void {
+      try {
+        const blob = actions.exportCurves(as);
+        const name = fileName(state.document.value.song?.name ?? 'dance', as === 'json' ? 'curves.json' : 'glb');
+        saveFile(blob, name);
+        context.announce(`${name} is saved.`);
+      } catch (error) {
+        context.notify('error', messageOf(error));
+      }
     },
   };
   return actions;
