@@ -1,4 +1,4 @@
-/** The library beside its poses: placing exactly with Alt. */
+/** The library beside its poses: placing exactly with Alt, and what it shows after the editor was in its place. */
 import { readFileSync } from 'node:fs';
 import { expect, test, type Page } from '@playwright/test';
 import { loadSong, open } from './support/page';
@@ -57,4 +57,31 @@ test('with Alt a pose goes exactly where it is clicked or dropped', async ({ pag
   await expect(page.locator('.key-pose')).toHaveCount(1);
   expect(Math.abs((await middle()) - beside)).toBeLessThan(1);
   expect(offBeat((await keys(page))[0])).toBeGreaterThan(0.05);
+});
+
+test('the library is as it was left when the pose editor closes', async ({ page }) => {
+  await openWithSong(page);
+  const scrolled = () => page.locator('.panel').evaluate((element) => element.scrollTop);
+  await page.locator('.panel').evaluate((element) => (element.scrollTop = 700));
+  await expect.poll(scrolled).toBe(700);
+  const editACopy = async (index: number) => {
+    await tiles(page).nth(index).press('Shift+F10');
+    await page.getByRole('menuitem', { name: 'Edit a copy' }).click();
+    await expect(page.getByRole('toolbar', { name: 'Pose editor' })).toBeVisible();
+    expect(await scrolled()).toBe(0);
+    await page.getByRole('button', { name: 'Cancel' }).press('Enter');
+    await expect(tiles(page).first()).toBeAttached();
+  };
+  await tiles(page).nth(16).focus();
+  const before = await scrolled();
+  expect(before).toBeGreaterThan(300);
+  await editACopy(16);
+  expect(await scrolled()).toBe(before);
+
+  await page.getByPlaceholder('Search poses').fill('arm');
+  const found = await tiles(page).count();
+  expect(found).toBeGreaterThan(0);
+  await editACopy(0);
+  await expect(page.getByPlaceholder('Search poses')).toHaveValue('arm');
+  await expect(tiles(page)).toHaveCount(found);
 });

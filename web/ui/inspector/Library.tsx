@@ -6,6 +6,7 @@ import type { LibraryPose } from '../../core/types';
 import { chooseFile } from '../files';
 import { Icon } from '../Icon';
 import { nextTile } from '../library/grid-keys';
+import { libraryGroup, libraryQuery, useKeptScroll } from '../library/kept-view';
 import { PoseMenu, type MenuTarget } from '../library/PoseMenu';
 import { PoseTile } from '../library/PoseTile';
 import { tip } from '../shortcuts';
@@ -18,8 +19,9 @@ const STANDING = new Array<number>(72).fill(0);
 export function Library() {
   const store = useStore();
   const { poses, ownPoses } = store.state;
-  const query = useSignal('');
-  const group = useSignal<string | null>(null);
+  const [query, group] = [libraryQuery, libraryGroup];
+  const search = useRef<HTMLInputElement>(null);
+  useKeptScroll(search);
   const sections = useComputed(() => {
     const words = query.value.toLowerCase().split(/\s+/).filter(Boolean);
     const fits = (pose: LibraryPose) => {
@@ -43,6 +45,7 @@ export function Library() {
         <Icon name="search" size={16} />
         <span class="visually-hidden">Search poses</span>
         <input
+          ref={search}
           type="search"
           placeholder="Search poses"
           value={query.value}
