@@ -9,6 +9,7 @@ import { createListener } from './app/listener';
 import { createReporter } from './app/report-client';
 import { createStorage } from './app/storage';
 import { createStore } from './app/store';
+import { createSuggester } from './app/suggester';
 import { createTabs } from './app/tabs';
 import { Player } from './audio/player';
 import { App } from './ui/App';
@@ -21,6 +22,7 @@ import './style-layout.css';
 import './style-timeline.css';
 import './style-beats.css';
 import './style-ranges.css';
+import './style-suggest.css';
 import './style-panels.css';
 import './style-pose.css';
 import './style-library.css';
@@ -39,6 +41,7 @@ const store = createStore(
     player: new Player(),
     listener: createListener(),
     engine: createEngine((model) => store.modelMoved(model)),
+    suggester: createSuggester(),
     // The dance of somebody's link takes no place of the visitor's own work until it is changed.
     storage: tabs ? createStorage('posebeat', () => tabs.writes.value && !store.isGuest.value) : noStorage(),
     tabs,

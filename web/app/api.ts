@@ -5,6 +5,7 @@ import type { ProjectDocument } from '../core/document';
 import type { GenerateCall, GenerateSummary } from './actions/dance';
 import type { MotionFileOptions } from './actions/export';
 import { MOTION_FORMATS, type MotionFormat } from './motion-formats';
+import type { SuggestCall } from './actions/suggest';
 import type { DanceReport } from './report';
 import type { Store } from './store';
 
@@ -23,11 +24,11 @@ export interface PosebeatApi {
   features(): { fps: number; names: string[]; data: Float32Array };
   /** Replaces the key poses: time in seconds, 24 x 3 axis-angle radians each. */
   setKeyPoses(keys: { time: number; rotations: ArrayLike<number>; name?: string }[]): void;
-  suggestKeyPoses(options?: {
-    density?: 'beat' | 'half' | 'bar';
-    range?: { start: number; end: number };
-    variation?: number;
-  }): Promise<{ time: number; rotations: number[] }[]>;
+  /**
+   * Suggests key poses on the song's beats, puts them on the timeline and gives them back; own and locked key poses stay. `half` is half
+   * a bar; `gaps` only fills between own key poses; the same seed gives the same poses.
+   */
+  suggestKeyPoses(options?: SuggestCall): Promise<{ time: number; rotations: number[] }[]>;
   /** Makes the dance; a later call cancels an earlier one. */
   generate(options?: GenerateCall): Promise<GenerateSummary>;
   /** The dance: rotations frames x 72 axis-angle radians, root frames x 3 metres. */
@@ -77,7 +78,10 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       return { fps: song.features.fps, names: [...spec.features.names], data: song.features.data.slice() };
     },
     setKeyPoses: (keys) => store.setKeyPoses(keys),
-    suggestKeyPoses: () => Promise.reject(new Error('Suggesting key poses is not available yet.')),
+    async suggestKeyPoses(options = {}) {
+      const found = await store.suggestKeyPoses(options);
+      return found.map(({ time, rotations }) => ({ time, rotations: [...rotations] }));
+    },
     generate: (options = {}) => store.generate(options),
     motion() {
       const motion = onStage();

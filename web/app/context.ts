@@ -9,6 +9,7 @@ import type { Assets, Engine, Listener, Storage } from './ports';
 import type { MotionFileWriter } from './export-client';
 import type { PoseStore } from './pose-store';
 import type { NoticeAction, State } from './state';
+import type { Suggester } from './suggester';
 import type { Tabs } from './tabs';
 
 /** The rooms around the app. */
@@ -16,6 +17,8 @@ export interface Services {
   player: Player;
   listener: Listener;
   engine: Engine;
+  /** Missing where no key poses can be suggested. */
+  suggester?: Suggester;
   storage: Storage;
   assets: Assets;
   /** Missing: the browser's own. */

@@ -25,6 +25,7 @@ import type { DanceResult, LoadProgress, ModelInfo } from './ports';
 import { madeFrom, type DanceInputs } from './recipe';
 import type { OwnPose } from './pose-store';
 import type { DanceReport } from './report';
+import { createSuggestState } from './suggester';
 
 /** The song at hand. Its parts arrive one after another: sound, waveform, first beats, everything. */
 export interface Song {
@@ -177,6 +178,7 @@ export function createState() {
   const duration = computed(() => song.value?.reference.duration ?? 0);
   const frames = computed(() => Math.ceil(duration.value * spec.fps));
   return {
+    ...createSuggestState(),
     document,
     ...createSuggestState(),
     undoLabel: signal<string | null>(null),

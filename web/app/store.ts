@@ -24,6 +24,7 @@ import { projectActions } from './actions/project';
 import { rangeActions } from './actions/ranges';
 import { shareActions } from './actions/share';
 import { songActions } from './actions/song';
+import { suggestActions } from './actions/suggest';
 import { tabActions } from './actions/tabs';
 import { tourActions } from './actions/tour';
 import { viewActions } from './actions/view';
@@ -158,6 +159,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...ranges,
     ...compare,
     ...pictureActions(context, dance),
+    ...suggestActions(context, dance.generateForPage),
     ...keys,
     ...curves,
     ...beats,

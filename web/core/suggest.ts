@@ -74,8 +74,8 @@ export function keysThatStay(keyPoses: readonly KeyPose[], range: TimeRange): Ke
 export function suggestionBeats(
   request: Pick<SuggestRequest, 'grid' | 'keyPoses' | 'density' | 'range' | 'gaps'>,
 ): number[] {
-  const { grid, keyPoses, density, gaps } = request;
-  const range = gaps ? betweenOwn(keyPoses, request.range) : request.range;
+  const { grid, keyPoses, density } = request;
+  const range = suggestionRange(request);
   if (!range) return [];
   const count = beatCount(grid);
   const stay = keysThatStay(keyPoses, range).map((key) => count.of(key.time));
@@ -88,6 +88,11 @@ export function suggestionBeats(
     const wanted = density === 'beat' || place === 0 || (density === 'half' && place % step === 0);
     return wanted && stay.every((beat) => Math.abs(beat - k) >= room) ? [k] : [];
   });
+}
+
+/** Where poses are suggested; between own key poses null where there are not two. */
+export function suggestionRange({ keyPoses, range, gaps }: Pick<SuggestRequest, 'keyPoses' | 'range' | 'gaps'>) {
+  return gaps ? betweenOwn(keyPoses, range) : range;
 }
 
 /** From the first to the last own key pose of a stretch; null where there are not two. */
@@ -151,7 +156,7 @@ export async function suggestPoses(
   const emit = new Set(wanted);
   const first = Math.max(0, wanted[0] - pastPoses);
   const last = wanted[wanted.length - 1];
-  const fixed = fixedBeats(keysThatStay(request.keyPoses, request.range), grid);
+  const fixed = fixedBeats(keysThatStay(request.keyPoses, suggestionRange(request) ?? request.range), grid);
   const context = new StepContext(request.features, grid, fixed, style);
   const temperature = temperatureOf(request.variation);
   const found: SuggestedPose[] = [];

@@ -24,6 +24,7 @@ export function KeyButton(props: { pose: KeyPose; width: number; chosen: boolean
     place ? `bar ${place.bar} beat ${place.beat}` : '',
     `${pose.time.toFixed(2)} s`,
     pose.locked ? 'locked' : '',
+    pose.suggested ? 'suggested' : '',
     percent < 100 ? `strength ${percent} %` : '',
   ].filter(Boolean);
   const kinds = [
@@ -31,6 +32,7 @@ export function KeyButton(props: { pose: KeyPose; width: number; chosen: boolean
     chosen && 'chosen',
     compact && 'compact',
     pose.locked && 'locked',
+    pose.suggested && 'suggested',
     percent < 100 && 'weak',
   ];
 

@@ -2,6 +2,7 @@ import { useComputed, useSignalEffect } from '@preact/signals';
 import type { VNode } from 'preact';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { useStore } from '../store-context';
+import { SuggestLane } from '../suggest/SuggestLane';
 import { barAndBeat, clockTime } from '../../app/snapping';
 import { keyWidths, LANES, placeKeys, stretchInSight, timeToX, type PlacedKey } from './geometry';
 import { KeyButton } from './KeyButton';
@@ -79,7 +80,10 @@ export function KeyLane() {
       style={{ top: `${LANES.keys.top}px`, height: `${LANES.keys.height}px` }}
     >
       {keys.value.length === 0 && dropTime.value === null && state.duration.value > 0 && (
-        <p class="lane-hint">Drag a pose here, or choose one in the list: it lands on a beat.</p>
+        <p class="lane-hint with-suggest">
+          <SuggestLane />
+          Drag a pose here, or choose one in the list: it lands on a beat.
+        </p>
       )}
       <div class="key-rail" ref={rail} role="presentation">
         {buttons}

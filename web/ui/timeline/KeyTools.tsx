@@ -1,4 +1,5 @@
 import { Icon, type IconName } from '../Icon';
+import { AlternateTools } from '../suggest/AlternateTools';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 
@@ -23,6 +24,7 @@ export function KeyTools() {
             <span class="diamond-sign" aria-hidden="true" />
             {count === 1 ? '1 key pose' : `${count} key poses`}
           </span>
+          <AlternateTools />
           <button
             type="button"
             class="tool bar-tool"
