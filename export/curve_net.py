@@ -3,6 +3,10 @@
 The paper decodes interval after interval from the ones before. Here an interval sees the key poses on either side of its own two instead:
 all intervals of a song are one batch, and a change of one key pose changes at most four of them.
 
+With `trunk`, the in-betweener of the light model (inbetween.py, trained before and kept as it is) bends the SLERP first and the DanTrans
+learns what is left: minutes of training on a CPU then go further. Only its curve at the two inner knots is needed, so its last layer is
+folded to those. Without it the inner knots start on the SLERP.
+
 Decoder tokens are the two key poses, each told with the other one and with its neighbour outside; the music is eight moments of the interval. The inner knots are a turn
 each from the SLERP of the two key poses at 1/3 and 2/3, so that an untrained network gives the interpolation.
 """
@@ -15,10 +19,11 @@ import torch
 from torch import Tensor, nn
 
 from dantrans import FROM_TREE, TREE_ORDER, DanTransConfig, DecoderLayer, JointLinear, WaveEncoder, body_module
-from inbetween import level_heading
-from rotation import quaternion_to_matrix
+from anchors import LIFT
+from inbetween import Gap, Inbetweener, InbetweenConfig, body_joints, cubic_weights, gap_features, level_heading
+from rotation import gram_schmidt, quaternion_to_matrix
 from skeleton import forward_kinematics
-from spec import JOINT_COUNT, SPEC, TOE_HEIGHT, TOES
+from spec import JOINT_COUNT, ROTATION_SIZE, SPEC, TOE_HEIGHT, TOES
 from suggest import turn_columns
 
 PART = SPEC["danceformer"]
@@ -30,9 +35,11 @@ INPUTS = ("keys", "key_mask", "seconds", "music")
 OUTPUTS = ("curves", "root")
 
 TOKENS = 2
+INNER = 2
 SHARED = 3 * 2 + 2  # three lengths in two forms, two flags
 JOINT_INPUTS = 6 + 6 + 6 + SHARED + TOKENS
 LARGEST_SHAPE = 0.9  # of tension, continuity, bias
+GAIN = 0.3  # of the last layers' numbers: their steps must not be large beside what they mean
 LARGEST_TURN = 1.5  # radians that an inner knot may leave the SLERP by
 
 
@@ -41,10 +48,13 @@ class CurveConfig:
     """Sizes."""
 
     net: DanTransConfig = field(default_factory=DanTransConfig)
+    trunk: InbetweenConfig | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.net, dict):
             self.net = DanTransConfig(**self.net)
+        if isinstance(self.trunk, dict):
+            self.trunk = InbetweenConfig(**self.trunk)
 
     def as_dict(self) -> dict:
         return asdict(self)
@@ -85,6 +95,55 @@ def ground_height(matrices: Tensor) -> Tensor:
     return TOE_HEIGHT - forward_kinematics(matrices)[..., TOES, 1].amin(-1)
 
 
+def small_quaternion(six_d: Tensor) -> Tensor:
+    """[..., 6] of a rotation well under half a turn -> quaternion [..., 4]: one algebraic form is enough there."""
+    a, b, c = gram_schmidt(six_d[..., :3], six_d[..., 3:])
+    w = (1 + a[..., :1] + b[..., 1:2] + c[..., 2:]).clamp_min(0.04).sqrt() / 2
+    vector = torch.cat([b[..., 2:] - c[..., 1:2], c[..., :1] - a[..., 2:], a[..., 1:2] - b[..., :1]], -1) / (4 * w)
+    whole = torch.cat([vector, w], -1)
+    return whole / (whole * whole).sum(-1, keepdim=True).sqrt()
+
+
+class Trunk(nn.Module):
+    """The light model's in-betweener, asked at the two inner knots only, and never trained here."""
+
+    def __init__(self, config: InbetweenConfig) -> None:
+        super().__init__()
+        whole = Inbetweener(config)
+        self.register_buffer("mean", whole.mean)
+        self.register_buffer("scale", whole.scale)
+        self.enter, self.blocks, self.norm = whole.enter, whole.blocks, whole.norm
+        self.turns = nn.Linear(config.width, INNER * ROTATION_SIZE)
+        for parameter in self.parameters():
+            parameter.requires_grad_(False)
+
+    @torch.no_grad()
+    def take(self, whole: Inbetweener) -> None:
+        """Copies the weights of a trained one; its curve's knots are weighed to what they give at the inner knots."""
+        self.mean.copy_(whole.mean)
+        self.scale.copy_(whole.scale)
+        for ours, theirs in ((self.enter, whole.enter), (self.blocks, whole.blocks), (self.norm, whole.norm)):
+            ours.load_state_dict(theirs.state_dict())
+        knots = whole.config.knots
+        weights = cubic_weights(torch.tensor(FRACTIONS), knots)[:, 1:-1]  # [2, knots]
+        self.turns.weight.copy_(torch.einsum("fk,kri->fri", weights, whole.turns.weight.unflatten(0, (knots, ROTATION_SIZE))).flatten(0, 1))
+        self.turns.bias.copy_((weights @ whole.turns.bias.unflatten(0, (knots, ROTATION_SIZE))).flatten())
+
+    def forward(self, matrices: Tensor, key_mask: Tensor, seconds: Tensor) -> tuple[Tensor, Tensor]:
+        """[B, 4, 24, 3, 3], [B, 2], [B, 3] -> (quaternions that the SLERP is turned by [B, 2, 24, 4], features [B, width])."""
+        joints = body_joints(matrices)
+        # Without an earlier key it was trained on the pose of half a second before: here the start, standing.
+        before = seconds[:, :1] + 0.5 * (1 - key_mask[:, :1])
+        gap = Gap(matrices.unbind(1), joints.unbind(1), torch.cat([before, seconds[:, 1:]], 1), key_mask[:, 0])
+        x = self.enter(((gap_features(gap) - self.mean) * self.scale).clamp(-5, 5))
+        for block in self.blocks:
+            x = x + block(x)
+        x = self.norm(x)
+        lift = 1 + LIFT * ((seconds[:, 1:2] - 0.5) / 1.5).clamp(0, 1)
+        six_d = (self.turns(x) * lift).unflatten(-1, (INNER, JOINT_COUNT, 6)) + x.new_tensor([1.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+        return small_quaternion(six_d), x
+
+
 class CurveNet(nn.Module):
     """keys [B, 4, 24, 4], key_mask [B, 2], seconds [B, 3], music [B, 8, 53] -> curves [B, 99, 5], root [B, 2, 3]."""
 
@@ -104,9 +163,15 @@ class CurveNet(nn.Module):
         self.music_mask = nn.ParameterList(nn.Parameter(torch.zeros(JOINT_COUNT, 1, TOKENS, STEPS), requires_grad=learned) for _ in self.layers)
         self.close = body_module(net, 1)
         self.join = JointLinear(JOINT_COUNT, 2 * width, width)
+        self.norm = nn.LayerNorm(width)
         self.turns = JointLinear(JOINT_COUNT, width, 3 * 2 + 3)
         self.path = nn.Linear(JOINT_COUNT * width, 2 + 3 * 2 + 3 * 3)
-        for last in (self.turns, self.path):
+        self.trunk = Trunk(config.trunk) if config.trunk else None
+        last_layers = [self.turns, self.path]
+        if config.trunk:
+            self.trunk_path = nn.Linear(config.trunk.width, 2 + 3 * 2 + 3 * 3)
+            last_layers.append(self.trunk_path)
+        for last in last_layers:
             nn.init.zeros_(last.weight)
             nn.init.zeros_(last.bias)
 
@@ -122,13 +187,17 @@ class CurveNet(nn.Module):
         start, end = keys[:, 1], keys[:, 2]
         end = end * torch.where((start * end).sum(-1, keepdim=True) < 0, -1.0, 1.0)
         knots = []
-        for fraction, turn in zip(FRACTIONS, (first, second)):
-            turn = torch.tanh(turn) * (LARGEST_TURN / 2)
-            # The pelvis is turned about axes of the heading, which is not the world's: its turn comes first, in its own frame, as every joint's.
-            knots.append(product(slerp_at(start, end, fraction), small_turn(turn)))
-        shape = torch.tanh(shape) * LARGEST_SHAPE
+        bent, seen = self.trunk(matrices, key_mask, seconds) if self.trunk else (None, None)
+        for number, (fraction, turn) in enumerate(zip(FRACTIONS, (first, second))):
+            turn = torch.tanh(turn * GAIN) * (LARGEST_TURN / 2)
+            base = slerp_at(start, end, fraction)
+            base = base if bent is None else product(base, bent[:, number])
+            knots.append(product(base, small_turn(turn)))
+        shape = torch.tanh(shape * GAIN) * LARGEST_SHAPE
         rotations = torch.cat([shape[:, :, None].expand(-1, -1, 4, -1), torch.stack(knots, -1)], -1).flatten(1, 2)  # [B, 96, 5]
-        path, offsets, path_shape = self.path(x.transpose(0, 1).flatten(1)).split((2, 6, 9), -1)
+        path = self.path(x.transpose(0, 1).flatten(1))
+        path = path if seen is None else path + self.trunk_path(seen)
+        path, offsets, path_shape = (path * GAIN).split((2, 6, 9), -1)
         length = seconds[:, 1:2]
         moved = self._to_world(torch.stack([path[:, :1] * length, length * 0, path[:, 1:] * length], -1), sine, cosine)[:, 0]
         offsets = self._to_world(offsets.unflatten(-1, (2, 3)) * length[..., None], sine, cosine)  # [B, 2, 3]
@@ -155,7 +224,7 @@ class CurveNet(nn.Module):
         for layer, mask, music_mask in zip(self.layers, self.mask, self.music_mask):
             x = layer(x, mask, heard, music_mask)
         x = self.join(torch.cat([x[:, :, 0], x[:, :, 1]], -1))
-        return x + self.close(x)
+        return self.norm(x + self.close(x))
 
     @staticmethod
     def _to_world(vectors: Tensor, sine: Tensor, cosine: Tensor) -> Tensor:

@@ -128,7 +128,7 @@ def compress(proto: onnx.ModelProto, form: str, name: str) -> onnx.ModelProto:
             continue
         axis = output_axis(proto, tensor.name)
         stored = tensor.name + "_stored"
-        if form == "q8" and axis == 1 and values.ndim == 3 and values.size >= SMALLEST_JOINT_QUANTISED:
+        if form in ("q8", "q6") and axis == 1 and values.ndim == 3 and values.size >= SMALLEST_JOINT_QUANTISED:
             # One matrix for each joint: a scale for each joint and output.
             rows = values.transpose(0, 2, 1).reshape(-1, values.shape[1])
             numbers, scale = quantise(rows, 0)

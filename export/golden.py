@@ -13,11 +13,13 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
 import torch
 from torch import Tensor
 
 import curves
 import dance_metrics
+import danceformer_data
 import metrics
 from export_onnx import compress, run_onnx, to_onnx, write_arrays
 from loss import key_weight
@@ -204,6 +206,35 @@ def curve_samples() -> dict:
     }
 
 
+def beat_music_samples() -> dict:
+    """Made-up MFCC, energy, chroma and onsets of 45 frames, some of them silent: the 53 numbers of a frame and the 57 of a beat."""
+    rng = np.random.default_rng(6)
+    frames = 45
+    mfcc = np.round(rng.standard_normal((frames, danceformer_data.MFCC)).cumsum(0) * 4 - 20, 3)
+    energy = np.round(-20 + 6 * rng.standard_normal(frames), 3)
+    energy[:4] = -90  # silent
+    chroma = rng.random((frames, 12))
+    chroma = np.round(chroma / np.linalg.norm(chroma, axis=1, keepdims=True), 5)
+    onset = np.round(rng.random(frames), 5)
+    beats, downbeats = np.array([0.21, 0.6, 1.02, 1.41]), np.array([0.6])
+    table = danceformer_data.frame_features(mfcc, energy, chroma, onset)
+    heard = danceformer_data.beat_music(table, beats, danceformer_data.bar_places(beats, downbeats, 3))
+    between = danceformer_data.interval_music(torch.from_numpy(table), torch.tensor([6.3]), torch.tensor([18.0]), 8)
+    return {
+        "tolerance": 1e-4,
+        "mfcc": mfcc.tolist(),
+        "energy": energy.tolist(),
+        "chroma": chroma.tolist(),
+        "onset": onset.tolist(),
+        "beats": beats.tolist(),
+        "downbeats": downbeats.tolist(),
+        "beatsPerBar": 3,
+        "frameFeatures": rounded(torch.from_numpy(table), 6),
+        "beatMusic": rounded(torch.from_numpy(heard), 6),
+        "interval": {"startSeconds": 0.21, "endSeconds": 0.6, "music": rounded(between[0], 6)},
+    }
+
+
 def tiny_model() -> KeyPoseDancer:
     """A model of random weights, small enough for tests."""
     torch.manual_seed(11)
@@ -233,6 +264,7 @@ SECTIONS = {
     "positional": "positional",
     "metrics": "measures",
     "curves-samples": "curve_samples",
+    "beat-music": "beat_music_samples",
 }
 
 

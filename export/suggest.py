@@ -126,6 +126,7 @@ class Suggester(nn.Module):
         else:
             self.code = nn.Linear(CODES, config.code_width)
         self.enter_code = nn.Linear(config.code_width, flat)
+        self.aimed, self.finished = nn.LayerNorm(width), nn.LayerNorm(width)
         self.finish_body = body_module(net, 1)
         self.turns = JointLinear(JOINT_COUNT, width, 6)
         self.step = nn.Linear(flat, STEP)
@@ -179,7 +180,7 @@ class Suggester(nn.Module):
         tokens = torch.cat([ahead * given, (ahead - now) * given, whole], -1)
         count = x.shape[2]
         x = x + self.enter_next(tokens.flatten(1, 2)).unflatten(1, (-1, count)) + self.enter_style(style)[None, :, None]
-        return x + self.aim(x.flatten(1, 2)).unflatten(1, (-1, count))
+        return self.aimed(x + self.aim(x.flatten(1, 2)).unflatten(1, (-1, count)))
 
     def scores(self, x: Tensor) -> Tensor:
         """[J, B, N, D] -> logits of the codes [B, N, K]."""
@@ -190,7 +191,7 @@ class Suggester(nn.Module):
         count = x.shape[2]
         told = self.enter_code(self.code(code)).unflatten(-1, (JOINT_COUNT, -1)).permute(2, 0, 1, 3)
         x = x + told
-        x = x + self.finish_body(x.flatten(1, 2)).unflatten(1, (-1, count))
+        x = self.finished(x + self.finish_body(x.flatten(1, 2)).unflatten(1, (-1, count)))
         turns = self.turns(x.flatten(1, 2)).unflatten(1, (-1, count))[FROM_TREE].permute(1, 2, 0, 3)
         step = self.step(x.permute(1, 2, 0, 3).flatten(2))
         if self.config.head == "codes":

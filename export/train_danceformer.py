@@ -28,6 +28,7 @@ from data import load_clips
 from record import record_run
 from spec import spec_hash
 from suggest import CODES, SuggestConfig, Suggester
+from train_inbetween import load_inbetweener
 from training import cosine_rate, follow, parse_flags, save_whole
 
 
@@ -55,6 +56,7 @@ class Settings:
     layers: int = 2
     dropout: float = 0.1
     all: bool = False
+    trunk: str = ""  # checkpoint of train_inbetween.py that stage 2 starts from
 
 
 def find_codes(dances: list[Dance], rng: torch.Generator, rounds: int = 12) -> tuple[Tensor, Tensor, Tensor]:
@@ -87,7 +89,12 @@ def build(settings: Settings) -> nn.Module:
     if settings.stage == "suggest":
         return Suggester(SuggestConfig(net=net, head=settings.head))
     if settings.stage == "curves":
-        return CurveNet(CurveConfig(net=net))
+        if not settings.trunk:
+            return CurveNet(CurveConfig(net=net))
+        whole = load_inbetweener(Path(settings.trunk))
+        model = CurveNet(CurveConfig(net=net, trunk=whole.config))
+        model.trunk.take(whole)
+        return model
     raise ValueError(f"no stage named {settings.stage!r}: choose suggest or curves")
 
 
@@ -124,8 +131,8 @@ class Trainer:
             self.curve_loss = CurveLoss(losses)
             self.held = [IntervalSampler(held, 100, 77, beats_share=1.0).batch()] if held else []
         self.averaged = copy.deepcopy(self.model)
-        decayed = [p for p in self.model.parameters() if p.ndim >= 2]
-        plain = [p for p in self.model.parameters() if p.ndim < 2]
+        decayed = [p for p in self.model.parameters() if p.ndim >= 2 and p.requires_grad]
+        plain = [p for p in self.model.parameters() if p.ndim < 2 and p.requires_grad]
         groups = [{"params": decayed, "weight_decay": settings.weight_decay}, {"params": plain, "weight_decay": 0.0}]
         self.optimiser = torch.optim.AdamW(groups, lr=settings.lr, betas=(0.9, 0.98))
         self.discriminator = Discriminator(settings.stage) if losses.adversarial > 0 else None
