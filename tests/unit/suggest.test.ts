@@ -198,6 +198,21 @@ describe('suggesting', () => {
         expect(withinLimits(joint, axisAngleToQuaternion(rotations.slice(joint * 3, joint * 3 + 3)))).toBe(true);
   });
 
+  it('holds a root that runs away', async () => {
+    const steps: StepInputs[] = [];
+    const network = fakeNetwork(steps);
+    const runaway: StepRunner = async (inputs) => {
+      const found = await network(inputs);
+      const before = inputs.poses.data.subarray(16 * ROW_SIZE - 3);
+      found.poses.set([before[0] * 10 + 9, -5, before[2]], ROW_SIZE - 3);
+      return found;
+    };
+    await suggestPoses(request({ range: { start: 0, end: 3 } }), runaway);
+    const roots = steps.map(({ poses }) => Array.from(poses.data.subarray(16 * ROW_SIZE - 3)));
+    expect(roots[1].map((v) => Math.round(v * 1e6) / 1e6)).toEqual([2, 0.1, 0]);
+    expect(roots[6][0]).toBeCloseTo(12, 4);
+  });
+
   it('stops when it is told to, and says why there is nothing to do', async () => {
     const controller = new AbortController();
     const stopped = suggestPoses(request(), fakeNetwork(), {

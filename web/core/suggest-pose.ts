@@ -27,10 +27,28 @@ export function poseOfRow(row: ArrayLike<number>): number[] {
   return quaternionsToPose(clampPose(quaternions));
 }
 
-/** Puts the rotations of one row, and the root of another, into `out`. */
-export function joinRow(rotations: ArrayLike<number>, root: ArrayLike<number>, out: Float32Array): void {
+/** Farthest way over the floor from beat to beat, and heights of a pelvis, metres: a root that runs away would carry the poses along. */
+const LONGEST_STEP = 2;
+const HEIGHTS = [0.1, 1.6] as const;
+
+/**
+ * Puts the rotations of one row, and the root of another, into `out`; the root stays within a dancer's reach of the pose before.
+ * @param before the pose one beat before, if there is one
+ */
+export function joinRow(
+  rotations: ArrayLike<number>,
+  root: ArrayLike<number>,
+  before: ArrayLike<number> | undefined,
+  out: Float32Array,
+): void {
   for (let i = 0; i < ROTATION_SIZE; i++) out[i] = rotations[i];
-  for (let i = ROTATION_SIZE; i < ROW_SIZE; i++) out[i] = Number.isFinite(root[i]) ? root[i] : 0;
+  const [x, y, z] = [ROTATION_SIZE, ROTATION_SIZE + 1, ROTATION_SIZE + 2];
+  const [fromX, fromZ] = before ? [before[x], before[z]] : [0, 0];
+  const [dx, dz] = [root[x] - fromX, root[z] - fromZ];
+  const share = Math.min(1, LONGEST_STEP / Math.max(1e-9, Math.hypot(dx, dz)));
+  out[x] = fromX + dx * share;
+  out[y] = Math.min(Math.max(root[y], HEIGHTS[0]), HEIGHTS[1]);
+  out[z] = fromZ + dz * share;
 }
 
 /** Mean distance of the joints of two poses with the pelvis in one place, metres. */

@@ -101,7 +101,7 @@ export class StepContext {
   take(beat: number, output: ArrayLike<number>): number[] {
     const rotations = poseOfRow(output);
     const row = new Float32Array(ROW_SIZE);
-    joinRow(this.fixed.get(beat)?.row ?? rowOfPose(rotations), output, row);
+    joinRow(this.fixed.get(beat)?.row ?? rowOfPose(rotations), output, this.done.get(beat - 1), row);
     this.done.set(beat, row);
     return rotations;
   }
