@@ -6,6 +6,7 @@ import { answerMessages, embedWish, noStorage, type Frame } from './app/embed';
 import { createEngine } from './app/engine';
 import { followAddress } from './app/link-address';
 import { createListener } from './app/listener';
+import { keepOffline, offlineBrowser } from './app/offline';
 import { createReporter } from './app/report-client';
 import { createStorage } from './app/storage';
 import { createStore } from './app/store';
@@ -28,8 +29,10 @@ import './style-pose.css';
 import './style-library.css';
 import './style-report.css';
 import './style-project.css';
+import './style-export.css';
 import './style-share.css';
 import './style-phone.css';
+import './style-contrast.css';
 
 const asked = new URLSearchParams(location.search).get('backend');
 const forcedBackend: Backend | undefined = asked === 'wasm' || asked === 'webgpu' ? asked : undefined;
@@ -74,6 +77,9 @@ async function openWhole(): Promise<void> {
   await store.whenReady();
   const { createThumbnailer } = await import('./scene/thumbnails');
   thumbnails.connect(createThumbnailer(), () => store.whenCalm());
+  const browser = import.meta.env.PROD ? offlineBrowser(window) : null;
+  await store.whenCalm();
+  if (browser) await keepOffline(store, browser);
 }
 
 if (embedded) openEmbedded();

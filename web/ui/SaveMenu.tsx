@@ -10,6 +10,7 @@ const MENU_ID = 'project-menu';
 export function SaveMenu() {
   const store = useStore();
   const menu = useRef<HTMLDivElement>(null);
+  const opener = useRef<HTMLButtonElement>(null);
   const { document, song, aside } = store.state;
   const then = (run: () => void) => () => {
     menu.current?.hidePopover();
@@ -19,6 +20,7 @@ export function SaveMenu() {
   return (
     <>
       <button
+        ref={opener}
         type="button"
         class="tool"
         aria-label="Save the project"
@@ -28,7 +30,23 @@ export function SaveMenu() {
       >
         <Icon name="download" />
       </button>
-      <div id={MENU_ID} class="menu project-menu" popover="auto" ref={menu} role="group" aria-label="Project">
+      <div
+        id={MENU_ID}
+        class="menu project-menu"
+        popover="auto"
+        ref={menu}
+        role="group"
+        aria-label="Project"
+        onToggle={(event) => event.newState === 'open' && menu.current?.querySelector('button')?.focus()}
+        onKeyDown={(event) => {
+          if (event.key !== 'Escape') return;
+          // Esc belongs to the innermost thing; the page must not hear of it.
+          event.preventDefault();
+          event.stopPropagation();
+          menu.current?.hidePopover();
+          opener.current?.focus();
+        }}
+      >
         <Entry
           icon="music"
           text="Save with the song inside"
@@ -41,6 +59,13 @@ export function SaveMenu() {
           text="Save without the song"
           hint="A small file; opening it asks for the song"
           onClick={then(() => void store.saveProject(false))}
+        />
+        <Entry
+          icon="fileOut"
+          text="Export the dance"
+          hint="A file for Blender, game engines or Python"
+          shortcut="export"
+          onClick={then(() => store.toggleExport(true))}
         />
         <Entry
           icon="share"

@@ -71,7 +71,8 @@ export function demoActions(context: Context, songs: SongActions, dance: DanceAc
     const { grid, dials } = history.present;
     const inputs = { ...inputsOf(demo.document), grid, dials };
     songs.showSong(song, { motion: demo.motion, kind: 'demo', inputs, result: null });
-    if (opening === 'first') {
+    // Whoever asked for less motion starts it by hand, and then it is heard.
+    if (opening === 'first' && !globalThis.matchMedia?.('(prefers-reduced-motion: reduce)').matches) {
       player.setMuted(true);
       player.play();
     }
