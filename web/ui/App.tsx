@@ -1,6 +1,7 @@
 import { useComputed } from '@preact/signals';
 import type { Store } from '../app/store';
 import { DropOverlay } from './DropOverlay';
+import { ExportPanel } from './export/ExportPanel';
 import { HelpOverlay } from './HelpOverlay';
 import { Inspector } from './inspector/Inspector';
 import { Notices } from './Notices';
@@ -30,6 +31,7 @@ export function App({ store, thumbnails }: { store: Store; thumbnails: Thumbnail
           <Inspector />
           <Notices />
           <HelpOverlay />
+          <ExportPanel />
           <Tour />
           <DropOverlay />
         </div>

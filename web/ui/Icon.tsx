@@ -62,6 +62,7 @@ import more from 'lucide-static/icons/ellipsis.svg?raw';
 import rename from 'lucide-static/icons/text-cursor-input.svg?raw';
 import upload from 'lucide-static/icons/upload.svg?raw';
 import locate from 'lucide-static/icons/locate-fixed.svg?raw';
+import fileOut from 'lucide-static/icons/file-output.svg?raw';
 import share from 'lucide-static/icons/share-2.svg?raw';
 
 const ICONS = {
@@ -99,6 +100,7 @@ const ICONS = {
   dices,
   download,
   flip,
+  fileOut,
   folder,
   follow,
   frame,

@@ -1,6 +1,7 @@
 import { useStore } from './store-context';
 import { chooseFile, chooseProject } from './files';
 import { Icon } from './Icon';
+import { ExportButton } from './export/ExportPanel';
 import { SaveMenu } from './SaveMenu';
 import { Share } from './share/SharePanel';
 import { tip } from './shortcuts';
@@ -68,6 +69,7 @@ export function TopBar() {
         <Icon name="folder" />
       </button>
       <SaveMenu />
+      <ExportButton />
       <Share />
       <button
         type="button"

@@ -317,6 +317,14 @@ export const SHORTCUTS: readonly Shortcut[] = [
     run: (store) => store.toggleShare(),
   },
   {
+    id: 'export',
+    keys: ['Mod+E'],
+    label: 'Export the dance as a file',
+    group: 'Project',
+    everywhere: true,
+    run: (store) => store.toggleExport(true),
+  },
+  {
     id: 'generate',
     keys: ['G'],
     label: 'Generate the dance',

@@ -1,0 +1,251 @@
+import { signal } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import type { MotionFileOptions } from '../../app/actions/export';
+import { estimateBytes, FRAME_RATES, type MotionFormat } from '../../app/motion-formats';
+import { clockTime } from '../../app/snapping';
+import spec from '../../core/spec.json';
+import { Icon } from '../Icon';
+import { tip } from '../shortcuts';
+import { useStore } from '../store-context';
+import { FORMAT_CARDS, sizeText, type FormatCard } from './formats';
+import { Segments } from './Segments';
+
+type Part = 'all' | 'trim' | 'loop';
+
+/** What was chosen last; it stays while the page is open. */
+const choice = {
+  format: signal<MotionFormat>('glb'),
+  fps: signal<number>(spec.fps),
+  units: signal<'m' | 'cm'>('cm'),
+  figure: signal(true),
+  part: signal<Part | null>(null),
+};
+
+/** Opens the panel. */
+export function ExportButton() {
+  const store = useStore();
+  return (
+    <button
+      type="button"
+      class="tool wide"
+      aria-label="Export the dance"
+      aria-haspopup="dialog"
+      title={tip('export')}
+      onClick={() => store.toggleExport(true)}
+    >
+      <Icon name="fileOut" />
+    </button>
+  );
+}
+
+/** The dance as a file for other programs. */
+export function ExportPanel() {
+  const store = useStore();
+  const open = store.state.exportOpen.value;
+  const dialog = useRef<HTMLDialogElement>(null);
+  useEffect(() => {
+    if (open) dialog.current?.showModal();
+    else dialog.current?.close();
+  }, [open]);
+  return (
+    <dialog
+      class="help export-panel"
+      ref={dialog}
+      aria-labelledby="export-title"
+      onClose={() => store.toggleExport(false)}
+      onClick={(event) => event.target === dialog.current && store.toggleExport(false)}
+      // The page's keys rest while the panel is open.
+      onKeyDown={(event) => event.stopPropagation()}
+    >
+      {open && (
+        <div class="export-body">
+          <div class="help-head">
+            <h2 id="export-title">Export the dance</h2>
+            <button type="button" class="tool" aria-label="Close" onClick={() => store.toggleExport(false)}>
+              <Icon name="close" />
+            </button>
+          </div>
+          <Contents />
+        </div>
+      )}
+    </dialog>
+  );
+}
+
+function Contents() {
+  const store = useStore();
+  const { onStage, document, loop, song } = store.state;
+  const dance = onStage.value;
+  // Read here, so that the panel follows them.
+  void [document.value.trim, loop.value];
+  if (!dance || dance.kind === 'preview') return <NoDance />;
+  const card = FORMAT_CARDS.find(({ format }) => format === choice.format.value)!;
+  const parts = (['all', 'trim', 'loop'] as const).filter((part) => store.exportFrames(part) !== null);
+  const wished = choice.part.value;
+  const part = wished && parts.includes(wished) ? wished : parts.includes('trim') ? 'trim' : 'all';
+  const frames = store.exportFrames(part) ?? 0;
+  const last = Math.max(0, frames - 1) / dance.motion.fps;
+  const fps = choice.fps.value;
+  const count = Math.floor(last * fps + 1e-6) + 1;
+  const bytes = estimateBytes(card.format, count, choice.figure.value);
+  const options: MotionFileOptions = { fps, units: choice.units.value, figure: choice.figure.value, range: part };
+  const name = song.value?.reference.name ?? document.value.song?.name;
+  return (
+    <>
+      <p class="hint">{name ? `To “${name}”. ` : ''}The file is made on this machine and goes nowhere else.</p>
+      <fieldset class="export-cards">
+        <legend class="visually-hidden">Format</legend>
+        {FORMAT_CARDS.map((each) => (
+          <FormatChoice key={each.format} card={each} />
+        ))}
+      </fieldset>
+      <Options card={card} parts={parts} part={part} />
+      <div class="export-foot">
+        <p>
+          <strong class="tabular">{clockTime(frames / dance.motion.fps)}</strong>
+          <span class="hint tabular">
+            {count} frames, about {sizeText(bytes)}
+          </span>
+        </p>
+        <SaveButton format={card.format} options={options} />
+      </div>
+    </>
+  );
+}
+
+function FormatChoice({ card }: { card: FormatCard }) {
+  return (
+    <label class="export-card">
+      <input
+        type="radio"
+        class="visually-hidden"
+        name="export-format"
+        checked={choice.format.value === card.format}
+        autofocus={choice.format.value === card.format}
+        aria-describedby={`export-${card.format}`}
+        onChange={() => (choice.format.value = card.format)}
+      />
+      <span class="export-mark" aria-hidden="true">
+        <Icon name="check" size={16} />
+      </span>
+      <span>
+        <strong>{card.name}</strong>
+        <small id={`export-${card.format}`}>{card.text}</small>
+      </span>
+    </label>
+  );
+}
+
+function Options({ card, parts, part }: { card: FormatCard; parts: readonly Part[]; part: Part }) {
+  const PARTS: Readonly<Record<Part, string>> = { all: 'Whole dance', trim: 'Trimmed part', loop: 'Selected stretch' };
+  return (
+    <div class="export-options">
+      {card.choices.includes('figure') && (
+        <Segments
+          legend="Content"
+          name="export-figure"
+          value={choice.figure.value}
+          options={[
+            { value: true, label: 'Figure', title: 'Our figure, skinned and dancing' },
+            { value: false, label: 'Skeleton only', title: 'The 24 joints and their motion' },
+          ]}
+          onChange={(value) => (choice.figure.value = value)}
+        />
+      )}
+      {card.choices.includes('units') && (
+        <Segments
+          legend="Units"
+          name="export-units"
+          value={choice.units.value}
+          options={[
+            { value: 'cm', label: 'Centimetres' },
+            { value: 'm', label: 'Metres' },
+          ]}
+          onChange={(value) => (choice.units.value = value)}
+        />
+      )}
+      <Segments
+        legend="Frames per second"
+        name="export-fps"
+        value={choice.fps.value}
+        options={FRAME_RATES.map((value) => ({
+          value: value as number,
+          label: String(value),
+          ...(value === spec.fps ? { title: 'As the dance is made' } : {}),
+        }))}
+        onChange={(value) => (choice.fps.value = value)}
+      />
+      {parts.length > 1 && (
+        <Segments
+          legend="Part"
+          name="export-part"
+          value={part}
+          options={parts.map((value) => ({ value, label: PARTS[value] }))}
+          onChange={(value) => (choice.part.value = value)}
+        />
+      )}
+      {card.hint && <p class="hint">{card.hint}</p>}
+    </div>
+  );
+}
+
+function SaveButton({ format, options }: { format: MotionFormat; options: MotionFileOptions }) {
+  const store = useStore();
+  const job = store.state.exportJob.value;
+  const percent = job ? Math.round(job.fraction * 100) : 0;
+  return (
+    <>
+      {job ? (
+        <button type="button" class="secondary progress" title="Stop writing" onClick={() => store.cancelExport()}>
+          <span class="progress-fill" style={{ width: `${percent}%` }} />
+          <Icon name="close" />
+          <span class="progress-text">
+            Writing <span class="tabular">{percent}%</span>
+          </span>
+        </button>
+      ) : (
+        <button type="button" class="primary motion-tone" onClick={() => void store.saveMotion(format, options)}>
+          <Icon name="download" />
+          Save .{format}
+        </button>
+      )}
+      <div class="visually-hidden" role="status">
+        {job ? 'Writing the file.' : ''}
+      </div>
+    </>
+  );
+}
+
+function NoDance() {
+  const store = useStore();
+  const { song, generation } = store.state;
+  const busy = generation.value.status !== 'idle';
+  return (
+    <div class="export-empty">
+      <Icon name="person" size={32} />
+      <p>
+        <strong>There is no dance yet.</strong>
+      </p>
+      <p class="hint">
+        {busy
+          ? 'It is being made: come back when it is on stage.'
+          : song.value
+            ? 'Generate it first; then it can be saved as GLB, BVH, npz or JSON.'
+            : 'Drop a song and press Generate; then it can be saved as GLB, BVH, npz or JSON.'}
+      </p>
+      {song.value && !busy && (
+        <button
+          type="button"
+          class="secondary"
+          onClick={() => {
+            store.toggleExport(false);
+            void store.generateForPage();
+          }}
+        >
+          <Icon name="sparkles" />
+          Generate
+        </button>
+      )}
+    </div>
+  );
+}

@@ -1,0 +1,50 @@
+/** The formats of the export panel: what each is for, and what can be chosen. */
+import type { MotionFormat } from '../../app/motion-formats';
+
+/** A card of the panel. */
+export interface FormatCard {
+  format: MotionFormat;
+  name: string;
+  /** Which program opens it. */
+  text: string;
+  /** A word to what is chosen below. */
+  hint?: string;
+  /** Choices beside frames per second and the part. */
+  choices: readonly ('units' | 'figure')[];
+}
+
+/** In the order of the panel. */
+export const FORMAT_CARDS: readonly FormatCard[] = [
+  {
+    format: 'glb',
+    name: 'GLB',
+    text: 'A 3D figure that dances, for Blender, Unreal, Godot and the web.',
+    choices: ['figure'],
+  },
+  {
+    format: 'bvh',
+    name: 'BVH',
+    text: 'The skeleton’s motion, for Blender, Maya, MotionBuilder and most animation programs.',
+    hint: 'Most programs take one unit for a centimetre.',
+    choices: ['units'],
+  },
+  {
+    format: 'npz',
+    name: 'SMPL (npz)',
+    text: 'SMPL rotations for Python and machine learning, under the names of AIST++ and AMASS.',
+    hint: 'Tools for AIST++ expect 60 frames per second. Translations are the pelvis’s place, in metres.',
+    choices: [],
+  },
+  {
+    format: 'json',
+    name: 'JSON',
+    text: 'Rotations, places, beats and key poses as plain text, for programs of your own.',
+    choices: [],
+  },
+];
+
+/** Bytes as people read them. */
+export function sizeText(bytes: number): string {
+  if (bytes < 1e5) return `${Math.max(1, Math.round(bytes / 1e3))} kB`;
+  return bytes < 1e7 ? `${(bytes / 1e6).toFixed(1)} MB` : `${Math.round(bytes / 1e6)} MB`;
+}
