@@ -106,6 +106,21 @@ describe('the whole body', () => {
       expect(turned(quaternions, start.quaternions, name)).toBeLessThan(8);
   });
 
+  it('leaves the standing legs and the trunk alone while a straight arm is drawn in', () => {
+    const straight = { root: start.root, quaternions: new Float32Array(96).map((_, i) => (i % 4 === 3 ? 1 : 0)) };
+    const pins = pinnedFeet(straight.quaternions);
+    const from = at(forwardKinematics(straight.quaternions, straight.root), 'left_wrist');
+    let pose: { root: ArrayLike<number>; quaternions: ArrayLike<number> } = straight;
+    for (let i = 1; i <= 40; i++) {
+      const way = Math.min(1, i / 8);
+      const goals = [reach('left_wrist', [from[0] - 0.36 * way, from[1] + 0.15 * way, from[2]]), ...pins];
+      pose = solver.solve(pose, goals, { limits: true, rest: straight, maxTurn: 20 });
+      for (const name of ['left_knee', 'right_knee', 'pelvis', 'spine1'])
+        expect(turned(pose.quaternions, straight.quaternions, name), name).toBeLessThan(8);
+    }
+    expect(turned(pose.quaternions, straight.quaternions, 'left_elbow')).toBeGreaterThan(60);
+  });
+
   it('leans with the trunk for what the arm alone does not reach', () => {
     const far = [0.15, 1.1, 0.72];
     const { quaternions, error } = solver.solve(start, [reach('left_wrist', far)], { limits: true, rest: start });

@@ -156,6 +156,8 @@ function approach({ chain, body, goals, targets, tethers, feet, weight: over, mo
   for (let round = 0; round < MOST_ROUNDS; round++) {
     if (rest && round < MOST_ROUNDS / 2) lean(body, rest, LEANING * (1 - (2 * round) / MOST_ROUNDS), weight);
     place(body);
+    // What an arm or leg does alone is left to it: a straight one cannot bend by small steps, and the trunk would go instead.
+    fitAll(body, goals);
     if (errorOf(body, goals) > TOLERANCE) {
       chain.step(body, targets, moveRoot, eased);
       eased.clear();
