@@ -38,8 +38,10 @@ export function startAutosave(context: Context, save: () => void): Autosave {
     settled = document;
     try {
       await services.storage.saveDocument(document);
+      state.unkept.value = false;
       persistOnce(document);
     } catch (error) {
+      state.unkept.value = true;
       if (told) return;
       told = true;
       context.notify(

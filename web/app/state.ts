@@ -285,6 +285,12 @@ export function createState() {
     wanted: signal<SongReference | null>(null),
     /** How many projects were put aside in this browser when a link was opened. */
     aside: signal(0),
+    /** Lets a newer page in; null = there is none. */
+    update: signal<(() => Promise<void>) | null>(null),
+    /** The visitor was told that letting it in now would lose work. */
+    updateRisk: signal(false),
+    /** The last save into this browser failed. */
+    unkept: signal(false),
     /** The panel with the link. */
     shareOpen: signal(false),
     /** Read out by screen readers; not shown. */

@@ -30,6 +30,7 @@ import { tourActions } from './actions/tour';
 import { viewActions } from './actions/view';
 import { tapActions } from './actions/tap';
 import { trimActions } from './actions/trim';
+import { updateActions } from './actions/update';
 import { startAutosave } from './autosave';
 import type { Context, Services } from './context';
 import { tuningActions } from './actions/tuning';
@@ -98,11 +99,8 @@ export function createStore(services: Services, reporter: Reporter) {
   const demo = demoActions(context, songs, dance);
   const project = projectActions(context, songs, demo, dance);
   const share = shareActions(context, { songs, demo, dance, project });
-  const tabs = tabActions(
-    context,
-    startAutosave(context, () => void project.saveProject(true)),
-    project,
-  );
+  const autosave = startAutosave(context, () => void project.saveProject(true));
+  const tabs = tabActions(context, autosave, project);
 
   /** Features and beats of the whole song, waiting for the analysis where it still runs. */
   function analysed(): Promise<{ features: Features; grid: BeatGrid }> {
@@ -172,6 +170,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...songs,
     ...project,
     ...share,
+    ...updateActions(context, autosave),
     /** Opens the page; with the end of an address that is a link, with its dance. */
     start: (link = '') => project.start(isLink(link) ? () => share.openLink(link, true) : undefined),
     ...exportActions(context),

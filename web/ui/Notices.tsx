@@ -1,4 +1,5 @@
 import { Icon } from './Icon';
+import { UpdateNotice } from './share/UpdateNotice';
 import { WantedSong } from './share/WantedSong';
 import { useStore } from './store-context';
 
@@ -17,6 +18,7 @@ export function Notices() {
             </button>
           </div>
         )}
+        <UpdateNotice />
         <WantedSong />
         {store.state.notices.value.map(({ id, kind, text, action }) => (
           <div key={id} class={`notice ${kind}`} role={kind === 'error' ? 'alert' : 'status'}>

@@ -1,6 +1,7 @@
 /** onnxruntime-web for one backend: only the build that is used is downloaded. */
 import type * as Ort from 'onnxruntime-web';
 import type { Backend } from './protocol';
+import { runtimeFiles } from './runtime-files';
 
 export type OrtModule = typeof Ort;
 
@@ -53,20 +54,12 @@ export function threadsAvailable(wanted?: number): number {
  * Loads onnxruntime for a backend. Its loader stays a file of its own: bundled, its thread workers would start the app instead and hang.
  */
 export async function openRuntime(backend: Backend, threads: number): Promise<OrtModule> {
-  const [ort, mjs, wasm] =
-    backend === 'webgpu'
-      ? await Promise.all([
-          import('onnxruntime-web/jspi'),
-          import('onnxruntime-web/ort-wasm-simd-threaded.jspi.mjs?url'),
-          import('onnxruntime-web/ort-wasm-simd-threaded.jspi.wasm?url'),
-        ])
-      : await Promise.all([
-          import('onnxruntime-web/wasm'),
-          import('onnxruntime-web/ort-wasm-simd-threaded.mjs?url'),
-          import('onnxruntime-web/ort-wasm-simd-threaded.wasm?url'),
-        ]);
+  const [ort, files] = await Promise.all([
+    backend === 'webgpu' ? import('onnxruntime-web/jspi') : import('onnxruntime-web/wasm'),
+    runtimeFiles(backend),
+  ]);
   const absolute = (path: string) => new URL(path, self.location.href).href;
-  ort.env.wasm.wasmPaths = { mjs: absolute(mjs.default), wasm: absolute(wasm.default) };
+  ort.env.wasm.wasmPaths = { mjs: absolute(files.mjs), wasm: absolute(files.wasm) };
   ort.env.wasm.numThreads = threads;
   ort.env.logLevel = 'error';
   return ort;
