@@ -28,6 +28,7 @@ import './style-panels.css';
 import './style-pose.css';
 import './style-library.css';
 import './style-report.css';
+import './style-curves.css';
 import './style-project.css';
 import './style-export.css';
 import './style-share.css';

@@ -206,16 +206,19 @@ describe('a change of a curve', () => {
 });
 
 describe('the interval in hand', () => {
-  it('is the one at the playhead until one is chosen', async () => {
+  it('is the one at the playhead', async () => {
     const { store } = await withCurves();
     const { times } = store.state.dance.value!.curves!;
     store.seek(2.5);
     const here = intervalInHand(store.state);
     expect(times[here]).toBeLessThanOrEqual(2.5);
     expect(times[here + 1]).toBeGreaterThan(2.5);
-    store.chooseCurveInterval(0);
+    store.stepCurveInterval(1);
+    expect(intervalInHand(store.state)).toBe(here + 1);
+    expect(store.state.time.value).toBeCloseTo((times[here + 1] + times[here + 2]) / 2, 6);
+    store.seek(0);
+    store.stepCurveInterval(-1);
     expect(intervalInHand(store.state)).toBe(0);
-    store.chooseCurveInterval(999);
-    expect(intervalInHand(store.state)).toBe(times.length - 2);
+    expect(intervalInHand(store.state, 999)).toBe(times.length - 2);
   });
 });

@@ -60,10 +60,10 @@ export interface Dance {
   keyStrength?: number;
   /** True when the document's own dials made it, so that it is what they stand for. */
   byDials?: boolean;
-}
   /** Engine `curves`: the curves as they were made, and the visitor's changes that `motion` has. */
   curves?: CurveDance;
   curveEdits?: readonly CurveEdit[];
+}
 
 /** Consistency against smoothness of a dance, as far as it is worked out. */
 export interface TradeOff {
@@ -180,7 +180,6 @@ export function createState() {
   return {
     ...createSuggestState(),
     document,
-    ...createSuggestState(),
     undoLabel: signal<string | null>(null),
     redoLabel: signal<string | null>(null),
     song,
@@ -204,12 +203,10 @@ export function createState() {
     /** The key strength under the visitor's finger, before it is let go. */
     strengthDraft: signal<number | null>(null),
     tradeOff: signal<TradeOff | null>(null),
-    /** Kinetic velocity against the music (paper A, figure 9) on the timeline. */
     /** The curves of a joint under the timeline, to be edited. */
     curvesOpen: signal(false),
     curveTrack: signal<CurveTrack>(16),
-    /** The interval whose shape is in hand, by its place in the dance; null = the one at the playhead. */
-    curveInterval: signal<number | null>(null),
+    /** Kinetic velocity against the music (paper A, figure 9) on the timeline. */
     curvesShown: signal(false),
     /** The beats in force: the visitor's corrections, else the analysis. */
     grid,

@@ -8,8 +8,8 @@ import type { BeatGrid, Features } from '../core/types';
 import { beatActions } from './actions/beats';
 import { cameraActions } from './actions/camera';
 import { compareActions } from './actions/compare';
-import { danceActions } from './actions/dance';
 import { curveActions } from './actions/curves';
+import { danceActions } from './actions/dance';
 import { demoActions } from './actions/demo';
 import { exportActions } from './actions/export';
 import { keyActions } from './actions/keys';
@@ -88,10 +88,10 @@ export function createStore(services: Services, reporter: Reporter) {
   const tuning = tuningActions(context, reporter, dance, cache);
   const beats = beatActions(context, dance.measureShown);
   const ranges = rangeActions(context, dance);
-  const curves = curveActions(context, dance, cache);
   const compare = compareActions(context, dance);
   const keys = keyActions(context);
   const view = viewActions(context);
+  const curves = curveActions(context, dance, cache, view.revealTime);
   const playback = playbackActions(context, view.revealTime);
   const pose = poseActions(context, keys, poseMath);
   const library = libraryActions(context, services.poseStore);
@@ -154,12 +154,12 @@ export function createStore(services: Services, reporter: Reporter) {
     state,
     ...dance,
     ...tuning,
+    ...curves,
     ...ranges,
     ...compare,
     ...pictureActions(context, dance),
     ...suggestActions(context, dance.generateForPage),
     ...keys,
-    ...curves,
     ...beats,
     ...tapActions(context, beats),
     ...trimActions(context),
@@ -190,8 +190,6 @@ export function createStore(services: Services, reporter: Reporter) {
   };
 }
 
-/** State and actions of the page. */
-export type Store = ReturnType<typeof createStore>;
 /** A key pose that goes takes the changes of its curves along: its id may be given again. */
 function withOwnCurves(document: ProjectDocument): ProjectDocument {
   const { curveEdits, keyPoses } = document;
@@ -202,3 +200,5 @@ function withOwnCurves(document: ProjectDocument): ProjectDocument {
   return next;
 }
 
+/** State and actions of the page. */
+export type Store = ReturnType<typeof createStore>;

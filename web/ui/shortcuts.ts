@@ -384,6 +384,13 @@ export const SHORTCUTS: readonly Shortcut[] = [
     group: 'View',
     run: (store) => store.toggleCurves(),
   },
+  {
+    id: 'joint-curves',
+    keys: ['C'],
+    label: 'Show the curves of a joint under the timeline',
+    group: 'View',
+    run: (store) => store.toggleCurveView(),
+  },
   { id: 'frame', keys: ['F'], label: 'Show the whole figure', group: 'View', run: (store) => store.frameFigure() },
   {
     id: 'ghosts',

@@ -1,14 +1,7 @@
 /** The curves of a dance in the visitor's hands: changes are in the document, the dance on stage follows them at once. */
 import { effect, untracked } from '@preact/signals';
 import { beatCount } from '../../core/beat-count';
-import {
-  allTracks,
-  knotBefore,
-  sampleChannels,
-  sampleCurves,
-  type CurveDance,
-  type CurveTrack,
-} from '../../core/curves';
+import { knotBefore, sampleChannels, sampleCurves, type CurveDance, type CurveTrack } from '../../core/curves';
 import {
   applyEdits,
   findEdit,
@@ -47,14 +40,12 @@ export function curvesOnStage(state: State): { base: CurveDance; shown: CurveDan
   return { base: dance.curves, shown: applyEdits(dance.curves, state.document.value.curveEdits ?? NO_EDITS) };
 }
 
-/** The interval in hand: the chosen one, else the one at the playhead. */
-export function intervalInHand(state: State): number {
+/** The interval at a time: what is edited is what the playhead is in; -1 without curves. */
+export function intervalInHand(state: State, time = state.time.value): number {
   const curves = state.dance.value?.curves;
   if (!curves || curves.times.length < 2) return -1;
-  const last = curves.times.length - 2;
-  const chosen = state.curveInterval.value;
-  if (chosen !== null) return Math.min(chosen, last);
-  return Math.min(Math.max(0, knotBefore(curves.times, state.time.value)), last);
+  // A frame may lie a hair before its key pose.
+  return Math.max(0, knotBefore(curves.times, time + 1e-4));
 }
 
 /** Changes to curves keep to their beats when the grid is another. */
@@ -72,8 +63,13 @@ export function curvesOnGrid(document: ProjectDocument, before: BeatGrid | null,
 }
 
 /** Actions on the curves of the dance. */
-export function curveActions(context: Context, dances: DanceActions, cache: DanceCache) {
-  const { state, history } = context;
+export function curveActions(
+  context: Context,
+  dances: DanceActions,
+  cache: DanceCache,
+  reveal: (time: number) => void,
+) {
+  const { state, history, services } = context;
   let dragging = false;
 
   // The dance on stage has the changes that the document says, also after undo, or when a former dance comes back.
@@ -134,8 +130,17 @@ export function curveActions(context: Context, dances: DanceActions, cache: Danc
       context.announce(`Curves of ${track === 'root' ? 'the way of the body' : trackName(track).replace('_', ' ')}.`);
     },
 
-    /** The stretch between two key poses whose shape is in hand; null = the one at the playhead. */
-    chooseCurveInterval: (interval: number | null) => (state.curveInterval.value = interval),
+    /** The stretch before (-1) or after (1) the one at the playhead: the playhead goes into its middle. */
+    stepCurveInterval(direction: -1 | 1): void {
+      const curves = state.dance.value?.curves;
+      const interval = intervalInHand(state) + direction;
+      if (!curves || interval < 0 || interval + 1 >= curves.times.length) return;
+      const [from, to] = [curves.times[interval], curves.times[interval + 1]];
+      services.player.seek((from + to) / 2);
+      state.time.value = (from + to) / 2;
+      reveal(state.time.value);
+      context.announce(`Stretch from ${from.toFixed(2)} to ${to.toFixed(2)} seconds.`);
+    },
 
     /** A drag of a knot or a handle begins. */
     beginCurveDrag(): void {
@@ -255,6 +260,3 @@ function reshaped(dance: Dance, edits: readonly CurveEdit[]): Motion {
   }
   return made;
 }
-
-/** The tracks in the order of the menu. */
-export const CURVE_TRACKS: readonly CurveTrack[] = allTracks();

@@ -5,6 +5,7 @@ import { tip } from '../shortcuts';
 import { PosePicture } from '../thumbs';
 import { TakeStepper } from '../report/TakeStepper';
 import { TradeOffPlot } from '../report/TradeOffPlot';
+import { EngineSwitch } from '../curves/EngineSwitch';
 import { Slider } from './Slider';
 
 const strengthText = (value: number) =>
@@ -27,15 +28,22 @@ export function DancePanel() {
     <>
       <SeedClips />
       <section class="block" aria-label="Settings">
-        <Slider
-          label="Key strength"
-          value={store.state.strengthDraft.value ?? dials.keyStrength}
-          text={strengthText}
-          tone="key"
-          onPreview={(value) => store.previewStrength(value)}
-          onCommit={(value) => store.commitStrength(value)}
-        />
-        <TradeOffPlot />
+        <EngineSwitch />
+        {document.value.engine === 'curves' ? (
+          <p class="hint">Curves run through every key pose exactly, so there is no key strength to set.</p>
+        ) : (
+          <>
+            <Slider
+              label="Key strength"
+              value={store.state.strengthDraft.value ?? dials.keyStrength}
+              text={strengthText}
+              tone="key"
+              onPreview={(value) => store.previewStrength(value)}
+              onCommit={(value) => store.commitStrength(value)}
+            />
+            <TradeOffPlot />
+          </>
+        )}
         <Slider
           label="Variation"
           value={dials.variation}

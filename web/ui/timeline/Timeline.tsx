@@ -3,6 +3,9 @@ import { useEffect, useRef } from 'preact/hooks';
 import { findSections } from '../../core/sections';
 import { useStore } from '../store-context';
 import { BeatLane } from './BeatLane';
+import { CURVE_LANE } from '../curves/curve-space';
+import { CurveTools } from '../curves/CurveTools';
+import { CurveView } from '../curves/CurveView';
 import { CurveLane } from './CurveLane';
 import { drawTimeline } from './draw';
 import { keyWidths, LANES, LANES_HEIGHT } from './geometry';
@@ -75,13 +78,16 @@ export function Timeline() {
   const canvas = usePainter(picture, drawTimeline);
 
   const curves = state.curvesShown.value;
-  const height = LANES_HEIGHT + (curves ? LANES.curves.height : 0);
+  const lanes = LANES_HEIGHT + (curves ? LANES.curves.height : 0);
+  const bending = state.curvesOpen.value;
+  const height = lanes + (bending ? CURVE_LANE.height : 0);
   return (
     <div class="timeline-body">
       <TimelineBar />
       <div class="timeline-surface" ref={box} style={{ height: `${height}px` }}>
         <canvas ref={canvas} class="timeline-canvas" style={{ height: `${LANES_HEIGHT}px` }} aria-hidden="true" />
         {curves && <CurveLane />}
+        {bending && <CurveView top={lanes} />}
         <BeatLane />
         <RangeLane />
         <KeyLane />
@@ -89,6 +95,7 @@ export function Timeline() {
         <TrimHandles />
         <Playhead />
       </div>
+      {bending && <CurveTools />}
       <ScrollBar />
     </div>
   );
