@@ -6,6 +6,7 @@ import type { GenerateCall, GenerateSummary } from './actions/dance';
 import type { MotionFileOptions } from './actions/export';
 import { MOTION_FORMATS, type MotionFormat } from './motion-formats';
 import type { SuggestCall } from './actions/suggest';
+import type { VideoCallOptions } from './actions/video';
 import type { DanceReport } from './report';
 import type { Store } from './store';
 
@@ -40,6 +41,12 @@ export interface PosebeatApi {
    * JSON, or with `as: 'glb'` an animation of cubic splines.
    */
   exportAs(format: ExportFormat, options?: MotionFileOptions & { song?: boolean; as?: 'json' | 'glb' }): Promise<Blob>;
+  /**
+   * The dance on stage as a video with the song: MP4, or WebM where the browser has no encoder for MP4 (a wished format that it cannot
+   * make is rejected). Every frame is drawn at its own time beside the page, and the sound begins with the first frame. A later call
+   * stops an earlier one. Rejects where there is no dance or no encoder; with an AbortError when `signal` fires.
+   */
+  exportVideo(options?: VideoCallOptions): Promise<Blob>;
   /** The project as an address: opening it shows the same dance. Rejects when it would be too long for one. */
   shareLink(): Promise<string>;
   /** A copy of the project document. */
@@ -99,6 +106,7 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       if (format === 'curves') return store.exportCurves(options.as);
       throw new Error(`There is no export format "${String(format)}": use bvh, glb, npz, json, curves or project.`);
     },
+    exportVideo: async (options = {}) => store.exportVideo(options),
     shareLink: async () => store.shareLink(location.href),
     document: () => structuredClone(state.document.value),
   };

@@ -8,6 +8,7 @@ import type { Backend } from '../workers/protocol';
 import type { Assets, Engine, Listener, Storage } from './ports';
 import type { MotionFileWriter } from './export-client';
 import type { PoseStore } from './pose-store';
+import type { Filmer } from '../video/video-client';
 import type { NoticeAction, State } from './state';
 import type { Suggester } from './suggester';
 import type { Tabs } from './tabs';
@@ -25,6 +26,8 @@ export interface Services {
   poseStore?: PoseStore;
   /** Missing: in a worker. */
   writeMotionFile?: MotionFileWriter;
+  /** Missing: in a worker. */
+  filmer?: Filmer;
   /** Missing where there can be no other tab. */
   tabs?: Tabs;
   /** From `?backend=`. */

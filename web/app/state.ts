@@ -25,6 +25,7 @@ import type { DanceResult, LoadProgress, ModelInfo } from './ports';
 import { madeFrom, type DanceInputs } from './recipe';
 import type { OwnPose } from './pose-store';
 import type { DanceReport } from './report';
+import type { VideoJob } from './actions/video';
 import { createSuggestState } from './suggester';
 
 /** The song at hand. Its parts arrive one after another: sound, waveform, first beats, everything. */
@@ -271,6 +272,10 @@ export function createState() {
     exportOpen: signal(false),
     /** The motion file that is being written, or null. */
     exportJob: signal<ExportJob | null>(null),
+    /** The video panel. */
+    videoOpen: signal(false),
+    /** The video that is being made, or null. */
+    videoJob: signal<VideoJob | null>(null),
     /** The walk-through: which step is shown, from 0; null = none. */
     tour: signal<number | null>(null),
     notices: signal<Notice[]>([]),

@@ -30,6 +30,7 @@ import { tourActions } from './actions/tour';
 import { viewActions } from './actions/view';
 import { tapActions } from './actions/tap';
 import { trimActions } from './actions/trim';
+import { videoActions } from './actions/video';
 import { updateActions } from './actions/update';
 import { startAutosave } from './autosave';
 import type { Context, Services } from './context';
@@ -174,6 +175,7 @@ export function createStore(services: Services, reporter: Reporter) {
     /** Opens the page; with the end of an address that is a link, with its dance. */
     start: (link = '') => project.start(isLink(link) ? () => share.openLink(link, true) : undefined),
     ...exportActions(context),
+    ...videoActions(context),
     ...demo,
     ...tabs,
     ...view,

@@ -1,11 +1,12 @@
 /** The stage: the figure, its floor, lights and camera, and the loop that draws them. */
-import { NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three';
+import { Scene, WebGLRenderer } from 'three';
 import type { CameraView } from '../core/document';
 import type { FramePose, PoseTools } from '../core/types';
 import { JOINT_COUNT } from '../core/skeleton';
 import { Figure } from './figure';
 import { loadFigure, type FigureAsset } from './figure-asset';
 import { createBackdrop, Floor } from './floor';
+import { applyLook } from './filming-look';
 import { FollowCamera } from './follow-camera';
 import { QualityGovernor } from './framing';
 import { Lights } from './lights';
@@ -364,11 +365,6 @@ function createRenderer(): WebGLRenderer {
       'This browser cannot show 3D (WebGL 2 is off). Turn on hardware acceleration or try another browser.',
     );
   }
-  // Reading a shader's log waits for it to be built: worth it only while developing.
-  renderer.debug.checkShaderErrors = import.meta.env.DEV;
-  renderer.toneMapping = NeutralToneMapping;
-  renderer.toneMappingExposure = 1.05;
-  renderer.shadowMap.enabled = true;
-  renderer.shadowMap.type = PCFShadowMap;
+  applyLook(renderer);
   return renderer;
 }

@@ -1,0 +1,102 @@
+/** A stage without a visitor: figure, floor and light drawn into a canvas of its own, one picture per call. */
+import { Color, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
+import type { FramePose } from '../core/types';
+import { Figure } from './figure';
+import { loadFigure } from './figure-asset';
+import { applyLook } from './filming-look';
+import { createBackdrop, Floor } from './floor';
+import { Lights } from './lights';
+
+/** One picture. */
+export interface Take {
+  pose: FramePose;
+  /** Where the camera is and what it looks at, metres. */
+  position: ArrayLike<number>;
+  target: ArrayLike<number>;
+  /** Middle of the light on the floor: x and z, metres. */
+  centre: ArrayLike<number>;
+  /** The floor's glow, 0..1. */
+  glow: number;
+}
+
+/** Figure, floor, lamps and a camera; made of the same parts as the stage. */
+export class FilmSet {
+  private readonly scene = new Scene();
+  private readonly floor = new Floor();
+  private readonly backdrop = createBackdrop();
+  private readonly lights = new Lights(true);
+  private readonly camera: PerspectiveCamera;
+
+  private constructor(
+    private readonly renderer: WebGLRenderer,
+    private readonly figure: Figure,
+    aspect: number,
+    fieldOfView: number,
+    onStage: boolean,
+  ) {
+    this.camera = new PerspectiveCamera(fieldOfView, aspect, 0.05, 120);
+    this.scene.add(figure.mesh, this.lights.group);
+    if (onStage) this.scene.add(this.floor.mesh, this.backdrop);
+  }
+
+  /**
+   * Builds the set.
+   * @param canvas of the picture's size in pixels
+   * @param background `stage`, or a colour as `#rrggbb`, which the picture has exactly
+   * @param fieldOfView vertical, degrees
+   * @throws Error when the browser has no WebGL 2 or the figure cannot be loaded
+   */
+  static async open(canvas: OffscreenCanvas, background: string, fieldOfView: number): Promise<FilmSet> {
+    const { width, height } = canvas;
+    const renderer = createRenderer(canvas);
+    renderer.setSize(width, height, false);
+    const onStage = background === 'stage';
+    const figure = new Figure(await loadFigure());
+    const set = new FilmSet(renderer, figure, width / height, fieldOfView, onStage);
+    if (!onStage) set.scene.background = new Color(background);
+    await renderer.compileAsync(set.scene, set.camera);
+    return set;
+  }
+
+  /**
+   * Draws one picture into the canvas; it is there until the script yields.
+   * @throws Error when the graphics card was taken away
+   */
+  draw({ pose, position, target, centre, glow }: Take): void {
+    if (this.renderer.getContext().isContextLost()) {
+      throw new Error(
+        'The graphics card was needed elsewhere: close other 3D pages, choose a smaller size, try again.',
+      );
+    }
+    this.figure.show(pose);
+    this.camera.position.fromArray(Array.from(position));
+    this.camera.lookAt(target[0], target[1], target[2]);
+    this.floor.follow(centre[0], centre[1]);
+    this.floor.glow = glow;
+    this.floor.shade(this.figure.pose.joints);
+    this.lights.follow(centre[0], centre[1]);
+    this.backdrop.position.copy(this.camera.position);
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** Frees everything. */
+  dispose(): void {
+    this.figure.dispose();
+    this.floor.dispose();
+    this.lights.dispose();
+    this.backdrop.geometry.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+}
+
+function createRenderer(canvas: OffscreenCanvas): WebGLRenderer {
+  let renderer: WebGLRenderer;
+  try {
+    renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+  } catch {
+    throw new Error('This browser cannot draw 3D here (WebGL 2 is off): turn on hardware acceleration and try again.');
+  }
+  applyLook(renderer);
+  return renderer;
+}
