@@ -27,7 +27,19 @@ describe('a project file', () => {
   it('without its song is readable JSON', () => {
     const bytes = writeProject(document);
     expect(JSON.parse(new TextDecoder().decode(bytes))).toEqual(document);
-    expect(readProject(bytes)).toEqual({ document, repairs: [], song: null });
+    expect(readProject(bytes)).toEqual({ document, repairs: [], motion: null, song: null });
+  });
+
+  it('says which dance it had, and does not believe nonsense about that', () => {
+    const motion = { motionHash: 'ab'.repeat(32), model: 'light (q6)', backend: 'wasm' };
+    for (const song of [null, noise(100)]) {
+      const read = readProject(writeProject(document, song, motion));
+      expect(read.motion).toEqual(motion);
+      expect(read.document).toEqual(document);
+    }
+    for (const wrong of [5, null, {}, { ...motion, motionHash: 'x'.repeat(500) }, { ...motion, model: 3 }]) {
+      expect(readProject(text({ ...document, motion: wrong }))).toMatchObject({ document, motion: null, repairs: [] });
+    }
   });
 
   it('with its song brings both back, the song’s bytes untouched and unpacked', () => {
@@ -54,12 +66,12 @@ describe('a project file', () => {
       'project.json': text(first),
       'notes/readme.txt': text('hi'),
     });
-    expect(readProject(other)).toEqual({ document, repairs: [], song: noise(999) });
+    expect(readProject(other)).toEqual({ document, repairs: [], motion: null, song: noise(999) });
   });
 
   it('does not care for names that lead elsewhere', () => {
     const file = zip({ '../../project.json': text({}), '/song.mp3': noise(5), 'project.json': text(document) });
-    expect(readProject(file)).toEqual({ document, repairs: [], song: null });
+    expect(readProject(file)).toEqual({ document, repairs: [], motion: null, song: null });
   });
 
   it('keeps hostile keys out of every prototype', () => {

@@ -1,3 +1,7 @@
+/** Fingerprints of songs and dances. */
+import { quantisedMotion } from '../core/formats/motion-quantised';
+import type { Motion } from '../core/types';
+
 /**
  * Identity of a song's bytes.
  *
@@ -10,6 +14,14 @@ export async function hashBytes(bytes: ArrayBuffer): Promise<string> {
     return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
   }
   return fnv(bytes);
+}
+
+/**
+ * Identity of a dance, for telling whether two pages made the same one: {@link hashBytes} of `quantisedMotion`. The same document, model
+ * and number of WASM threads give the same one; other backends come near, which is not the same.
+ */
+export function motionHash(motion: Motion): Promise<string> {
+  return hashBytes(quantisedMotion(motion).buffer);
 }
 
 /** True when `hash` is of these bytes, whichever of the two kinds it is. */

@@ -1,10 +1,10 @@
 /** Opening the page, saving and opening projects. */
 import type { ProjectDocument } from '../../core/document';
 import { parseDocument } from '../../core/document-read';
-import { MAX_PROJECT_BYTES, readProject, writeProject } from '../../core/formats/project-file';
+import { MAX_PROJECT_BYTES, readProject, writeProject, type SavedMotion } from '../../core/formats/project-file';
 import { isAbort, messageOf, type Context } from '../context';
 import { fileName, saveFile } from '../download';
-import { isHashOf } from '../hash';
+import { isHashOf, motionHash } from '../hash';
 import type { SavedDance } from '../ports';
 import type { DanceActions } from './dance';
 import type { DemoActions } from './demo';
@@ -94,12 +94,22 @@ export function projectActions(context: Context, songs: SongActions, demo: DemoA
   /** The bytes of a project file. */
   async function projectFile(withSong: boolean): Promise<Blob> {
     const document = state.document.value;
-    if (!withSong || !document.song) return new Blob([writeProject(document)], { type: 'application/json' });
+    const made = await savedMotion();
+    if (!withSong || !document.song)
+      return new Blob([writeProject(document, null, made)], { type: 'application/json' });
     const missing = `The file of “${document.song.name}” is no longer at hand: drop the song again, then save.`;
     const song = await songs.songFile();
     const bytes = await song?.arrayBuffer().catch(() => null);
     if (!bytes || !(await isHashOf(document.song.hash, bytes))) throw new Error(missing);
-    return new Blob([writeProject(document, new Uint8Array(bytes))], { type: ZIP_TYPE });
+    return new Blob([writeProject(document, new Uint8Array(bytes), made)], { type: ZIP_TYPE });
+  }
+
+  /** The dance on stage, as a file tells of it; null where it is not that of the document. */
+  async function savedMotion(): Promise<SavedMotion | null> {
+    const shown = state.dance.value;
+    if (shown?.kind !== 'generated' || !shown.byDials || state.stale.value) return null;
+    const { model = '', backend = '' } = shown.result ?? {};
+    return { motionHash: await motionHash(shown.motion), model, backend };
   }
 
   songs.onMissing(async (wanted) => {
