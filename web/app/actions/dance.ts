@@ -6,34 +6,17 @@ import spec from '../../core/spec.json';
 import type { BeatGrid, Features, Motion, SeedClip } from '../../core/types';
 import type { Backend } from '../../workers/protocol';
 import { isAbort, messageOf, onGrid, type Context } from '../context';
+import { checkCall, defined, meansDials, summary, type GenerateCall, type GenerateSummary } from '../dance-call';
 import type { DanceCache } from '../dance-cache';
 import { createMaker } from '../dance-maker';
-import type { LoadProgress, ModelInfo, SavedDance } from '../ports';
+import type { ModelInfo, SavedDance } from '../ports';
 import { inputsOf, madeFrom, trimFrames, type DanceInputs } from '../recipe';
 import type { Reporter } from '../report-client';
-import { measureDance, type DanceReport } from '../report';
 import type { Dance } from '../state';
+import { danceReport } from './dance-report';
+import { modelLoader } from './model-loader';
 
-/** Settings of one dance; what is left out comes from the document's dials. */
-export interface GenerateCall {
-  keyStrength?: number;
-  variation?: number;
-  seed?: number;
-  /** Seconds; only this stretch is made anew. */
-  range?: { start: number; end: number };
-  /** Another one than the project's becomes the project's. */
-  engine?: EngineName;
-  backend?: Backend;
-}
-
-/** What a dance cost. */
-export interface GenerateSummary {
-  backend: Backend;
-  model: string;
-  frames: number;
-  milliseconds: number;
-  windows: number;
-}
+export type { GenerateCall, GenerateSummary } from '../dance-call';
 
 /** A whole song as it was heard. */
 interface Heard {
@@ -44,55 +27,19 @@ interface Heard {
 /** Actions on dances. */
 export function danceActions(context: Context, reporter: Reporter, cache: DanceCache) {
   const { state, services } = context;
+  const { measureShown, showReport, reportNow } = danceReport(context, reporter);
   const maker = createMaker(context, reporter, cache);
   const hash = () => state.song.value?.reference.hash ?? '';
   /** A dance that is being put together from parts. */
   let bringing: AbortController | null = null;
   let running: AbortController | null = null;
-  /** The dance that the report is of. */
-  let measured: Motion | null = null;
-  const loading = new Map<EngineName, { backend: Backend | undefined; promise: Promise<ModelInfo> }>();
+  const loadModel = modelLoader(context, () => running !== null);
 
   const cancel = (reason = 'Cancelled.') => {
     running?.abort(new DOMException(reason, 'AbortError'));
     running = null;
     state.partial.value = null;
     state.generation.value = { status: 'idle' };
-  };
-
-  const loadModel = (backend = services.forcedBackend, engine: EngineName = 'light'): Promise<ModelInfo> => {
-    const before = loading.get(engine);
-    if (before && before.backend === backend) return before.promise;
-    const onProgress = (progress: LoadProgress) => {
-      if (running) state.generation.value = { status: 'loading', ...progress };
-    };
-    const promise = services.engine
-      .load(backend, onProgress, ...(engine === 'light' ? [] : [engine]))
-      .then((info) => (state.model.value = info));
-    loading.set(engine, { backend, promise });
-    // A failed download must not be remembered: the next press of Generate tries again.
-    promise.catch(() => {
-      if (loading.get(engine)?.promise === promise) loading.delete(engine);
-    });
-    return promise;
-  };
-
-  const check = (call: GenerateCall): void => {
-    if (call.engine !== undefined && call.engine !== 'light' && call.engine !== 'curves') {
-      throw new Error(`There is no engine "${String(call.engine)}": use "light" or "curves".`);
-    }
-    if (call.backend !== undefined && call.backend !== 'webgpu' && call.backend !== 'wasm') {
-      throw new Error(`There is no backend "${String(call.backend)}": use "webgpu" or "wasm".`);
-    }
-    for (const name of ['keyStrength', 'variation'] as const) {
-      const value = call[name];
-      if (value !== undefined && !(typeof value === 'number' && value >= 0 && value <= 1)) {
-        throw new Error(`${name} must be a number from 0 to 1.`);
-      }
-    }
-    if (call.seed !== undefined && !(Number.isInteger(call.seed) && call.seed >= 0 && call.seed < 2 ** 31)) {
-      throw new Error('seed must be a whole number from 0 to 2147483647.');
-    }
   };
 
   /** What makes the dance: one step of undo; the other engine's dance comes back at once where it was made before. */
@@ -156,7 +103,7 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
   };
 
   async function generate(call: GenerateCall = {}): Promise<GenerateSummary> {
-    check(call);
+    checkCall(call);
     const seedClip = seedClipNow();
     if (call.engine) setEngine(call.engine);
     const range = frameRange(call.range);
@@ -270,28 +217,6 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     services.storage.saveDance(saved).catch(() => undefined);
   }
 
-  /** Shows what was measured of a dance. */
-  function showReport(motion: Motion, report: DanceReport): void {
-    measured = motion;
-    state.report.value = report;
-  }
-
-  /** What the dance on stage dances to, where the song is trimmed. */
-  const partShown = () => trimFrames(state.dance.value?.inputs?.trim ?? null, state.frames.value);
-
-  /** Measures the dance on stage for the report panel. */
-  async function measureShown(): Promise<void> {
-    const dance = state.dance.value;
-    if (!dance || dance.kind === 'preview') return;
-    const keys = dance.inputs?.keyPoses ?? state.document.value.keyPoses;
-    try {
-      const report = await reporter.measure(dance.motion, keys, state.grid.value, partShown());
-      if (state.dance.value?.motion === dance.motion) showReport(dance.motion, report);
-    } catch (error) {
-      if (!isAbort(error)) context.notify('error', messageOf(error));
-    }
-  }
-
   return {
     loadModel,
     setEngine,
@@ -299,6 +224,7 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     measureShown,
     saveShown,
     showReport,
+    reportNow,
     showDance: show,
     bringBack,
 
@@ -351,15 +277,6 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
     /** Stops generating; the last good dance stays. */
     cancel,
 
-    /** Measures the dance on stage now. Throws when there is none. */
-    reportNow(): DanceReport {
-      const dance = state.dance.value;
-      if (!dance) throw new Error('There is no dance yet: call generate first.');
-      const keys = dance.inputs?.keyPoses ?? state.document.value.keyPoses;
-      const known = measured === dance.motion ? state.report.value : null;
-      return structuredClone(known ?? measureDance(dance.motion, keys, state.grid.value, partShown()));
-    },
-
     /** Changes a setting of the next dance: one step of undo. */
     setDial<K extends 'keyStrength' | 'variation' | 'seed' | 'seedClip'>(
       name: K,
@@ -374,23 +291,6 @@ export function danceActions(context: Context, reporter: Reporter, cache: DanceC
 
 /** Actions on dances. */
 export type DanceActions = ReturnType<typeof danceActions>;
-
-/** True when a dance made with these settings is what the document's own dials stand for. */
-function meansDials(used: Settings, dials: Settings): boolean {
-  return used.keyStrength === dials.keyStrength && used.variation === dials.variation && used.seed === dials.seed;
-}
-
-type Settings = Required<Pick<GenerateCall, 'keyStrength' | 'variation' | 'seed'>>;
-
-function summary(motion: Motion, result: Dance['result']): GenerateSummary {
-  const { backend, model, milliseconds, windows } = result!;
-  return { backend, model, frames: motion.frames, milliseconds, windows };
-}
-
-/** The members that are not undefined. */
-function defined(call: GenerateCall): GenerateCall {
-  return Object.fromEntries(Object.entries(call).filter(([, value]) => value !== undefined));
-}
 
 /** Rejects when the signal fires. */
 function aborted(signal: AbortSignal): Promise<never> {
