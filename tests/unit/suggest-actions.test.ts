@@ -148,7 +148,7 @@ describe('suggesting key poses', () => {
     await store.suggestForPage();
     expect(asked.map(({ seed }) => seed)).toEqual([asked[0].seed, asked[0].seed + 1]);
     const notice = store.state.notices.value.at(-1)!;
-    expect(notice.text).toMatch(/^\d+ key poses are suggested/);
+    expect(notice.text).toMatch(/^\d+ key poses suggested/);
     notice.action!.run();
     await vi.waitFor(() => expect(store.state.dance.value?.kind).toBe('generated'));
     const api = createApi(store, Promise.resolve());

@@ -238,8 +238,7 @@ export function suggestActions(context: Context, generate: () => Promise<void>) 
           ...(style ? { style } : {}),
         });
         presses += 1;
-        const count = found.length === 1 ? 'One key pose is' : `${found.length} key poses are`;
-        const text = `${count} suggested: change what you like.`;
+        const text = `${found.length === 1 ? 'One key pose' : `${found.length} key poses`} suggested.`;
         context.notify('info', text, { label: 'Generate the dance', run: () => void generate() });
         context.announce(text);
       } catch (error) {

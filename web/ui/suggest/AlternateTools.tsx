@@ -3,8 +3,8 @@ import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 
-/** Other poses for the selected suggestion, to flip through. */
-export function AlternateTools() {
+/** Other poses for the selected suggestion, to flip through; `wide` with a word before it. */
+export function AlternateTools({ wide = false }: { wide?: boolean }) {
   const store = useStore();
   const { selection, document, alternates } = store.state;
   const chosen = document.value.keyPoses.filter((key) => selection.value.has(key.id));
@@ -17,7 +17,12 @@ export function AlternateTools() {
   if (!key) return null;
   const at = alternates.value && store.alternateOf(key);
   return (
-    <div class="alternate-switch" role="group" aria-label="Other poses for this suggestion">
+    <div
+      class={`alternate-switch ${wide ? 'wide' : ''}`}
+      role="group"
+      aria-label={wide ? 'Suggested pose: others for it' : 'Other poses for this suggestion'}
+    >
+      {wide && <span class="alternate-word">Suggested: try another</span>}
       <button
         type="button"
         class="bar-button"

@@ -82,7 +82,7 @@ export function KeyLane() {
       {keys.value.length === 0 && dropTime.value === null && state.duration.value > 0 && (
         <p class="lane-hint with-suggest">
           <SuggestLane />
-          Drag a pose here, or choose one in the list: it lands on a beat.
+          <span class="lane-words">Drag a pose here, or choose one in the list: it lands on a beat.</span>
         </p>
       )}
       <div class="key-rail" ref={rail} role="presentation">

@@ -6,6 +6,7 @@ import { Icon } from '../Icon';
 import { Slider } from '../inspector/Slider';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
+import { AlternateTools } from '../suggest/AlternateTools';
 import { PosePicture } from '../thumbs';
 
 const strengthText = (value: number) =>
@@ -83,6 +84,7 @@ export function SelectedKeys() {
           <Icon name="trash" />
         </button>
       </div>
+      <AlternateTools wide />
       {single && <PlaceFields pose={first} />}
       {!locked && (
         <Slider
