@@ -15,6 +15,7 @@ import { exportActions } from './actions/export';
 import { keyActions } from './actions/keys';
 import { layoutActions } from './actions/layout';
 import { libraryActions } from './actions/library';
+import { motionImportActions } from './actions/motion-import';
 import { overlayActions } from './actions/overlays';
 import { playbackActions } from './actions/playback';
 import { poseActions } from './actions/pose';
@@ -175,6 +176,7 @@ export function createStore(services: Services, reporter: Reporter) {
     /** Opens the page; with the end of an address that is a link, with its dance. */
     start: (link = '') => project.start(isLink(link) ? () => share.openLink(link, true) : undefined),
     ...exportActions(context),
+    ...motionImportActions(context),
     ...videoActions(context),
     ...demo,
     ...tabs,

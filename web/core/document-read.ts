@@ -20,6 +20,7 @@ import {
   engineSchema,
   gridSchema,
   keyPoseSchema,
+  seedClipSchema,
   songSchema,
   takeRangeSchema,
   timeRangeSchema,
@@ -62,12 +63,20 @@ export function parseDocument(input: unknown): { document: ProjectDocument; repa
       keyPoses: repairKeys(raw.keyPoses, duration, repairs),
       ranges: repairRanges(raw.ranges, duration, repairs),
       dials: repairDials(raw.dials, repairs),
+      ...ownSeedPart(raw, repairs),
       ...curvePart(raw, repairs),
       avatar: repairAvatar(raw.avatar, repairs),
       camera: repairPart(cameraSchema, raw.camera, 'The camera was damaged: the opening view is shown.', repairs),
     },
     repairs,
   };
+}
+
+/** The starting clip of the visitor's own; projects without one stay without. */
+function ownSeedPart(raw: Record<string, unknown>, repairs: string[]): Pick<ProjectDocument, 'ownSeed'> {
+  const message = 'The starting clip of your own was damaged and left out.';
+  const ownSeed = repairPart(seedClipSchema, raw.ownSeed, message, repairs);
+  return ownSeed ? { ownSeed } : {};
 }
 
 /** The engine and the edited curves; projects without them stay without. */

@@ -81,6 +81,19 @@ export const cameraSchema = v.object({
   position: v.tuple([place, place, place]),
   target: v.tuple([place, place, place]),
 });
+/** A starting clip: as many poses and places as its beats and rate say. */
+export const seedClipSchema = v.pipe(
+  v.object({
+    id: v.pipe(v.string(), v.regex(/^own-[0-9a-f]{1,40}$/)),
+    name: v.pipe(v.string(), v.maxLength(100)),
+    description: v.pipe(v.string(), v.maxLength(300)),
+    beats: v.pipe(v.number(), v.integer(), v.minValue(1), v.maxValue(32)),
+    rate: v.pipe(v.number(), v.integer(), v.minValue(1), v.maxValue(16)),
+    poses: v.pipe(v.array(rotationsSchema), v.maxLength(512)),
+    root: v.pipe(v.array(v.tuple([place, place, place])), v.maxLength(512)),
+  }),
+  v.check(({ beats, rate, poses, root }) => poses.length === beats * rate && root.length === beats * rate),
+);
 /** What makes a dance. */
 export const engineSchema = v.picklist(['light', 'curves']);
 const anchor = v.union([id, v.pipe(v.number(), v.minValue(-100_000), v.maxValue(100_000))]);

@@ -4,7 +4,7 @@ import type { CurveEdit } from './curves-edit';
 import { rotationsSchema, unit } from './document-schema';
 import { FIRST_TAKE } from './filler';
 import spec from './spec.json';
-import type { BeatGrid, KeyPose } from './types';
+import type { BeatGrid, KeyPose, SeedClip } from './types';
 
 export { POSE_SIZE } from './document-schema';
 
@@ -79,6 +79,8 @@ export interface ProjectDocument {
   keyPoses: KeyPose[];
   ranges: TakeRange[];
   dials: Dials;
+  /** A starting clip out of a file of the visitor's; `dials.seedClip` may name it. */
+  ownSeed?: SeedClip;
   /** Missing = light. */
   engine?: EngineName;
   /** Changes to the curves of the engine `curves`. */

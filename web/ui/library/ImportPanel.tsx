@@ -5,6 +5,7 @@ import { poseOfFrame, suggestFrames } from '../../core/formats/pose-sequence';
 import { Icon } from '../Icon';
 import { useStore } from '../store-context';
 import { DrawnPose, PosePicture } from '../thumbs';
+import { ImportMotion } from './ImportMotion';
 
 /** Frames in the strip of suggestions. */
 const SUGGESTED = 6;
@@ -118,6 +119,7 @@ export function ImportPanel() {
           </ul>
         </div>
       )}
+      {many && <ImportMotion />}
       <div class="pose-import-actions">
         <button type="button" class="primary key-tone" onClick={() => store.placeFrame()}>
           <Icon name="plus" />
