@@ -1,5 +1,5 @@
-import AxeBuilder from '@axe-core/playwright';
 import { expect, test, type Page } from '@playwright/test';
+import { bvh } from './support/bvh';
 import { collectErrors, loadSong, open } from './support/page';
 import { wav } from './support/songs';
 
@@ -16,28 +16,6 @@ async function openWithSong(page: Page): Promise<void> {
   await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
   await open(page);
   await loadSong(page, wav({ seconds: 12 }));
-}
-
-/** Three frames: standing, the left arm lowered by a radian, standing. */
-function bvh(): Buffer {
-  const limbs = (side: string, x: number) => [
-    `JOINT ${side}UpLeg`, `${x * 9} -5 0`, `JOINT ${side}Leg`, '0 -45 0', `JOINT ${side}Foot`, '0 -42 -3', '}', '}', '}',
-    `JOINT ${side}Arm`, `${x * 18} 45 0`, `JOINT ${side}ForeArm`, `${x * 26} -1 -2`, `JOINT ${side}Hand`, `${x * 25} 0 0`, '}', '}', '}',
-  ]; // prettier-ignore
-  const parts = ['ROOT Hips', '0 95 0', 'JOINT Head', '0 65 0', '}', ...limbs('Left', 1), ...limbs('Right', -1), '}'];
-  const joints = parts.map((part) =>
-    /^[A-Z]/.test(part)
-      ? `${part}\n{`
-      : part === '}'
-        ? part
-        : `OFFSET ${part}\nCHANNELS 3 Zrotation Xrotation Yrotation`,
-  );
-  const names = parts.filter((part) => /^[A-Z]/.test(part));
-  const still = names.map(() => '0 0 0').join(' ');
-  const lowered = names.map((name) => (name === 'JOINT LeftArm' ? `${-180 / Math.PI} 0 0` : '0 0 0')).join(' ');
-  return Buffer.from(
-    `HIERARCHY\n${joints.join('\n')}\nMOTION\nFrames: 3\nFrame Time: 0.016667\n${still}\n${lowered}\n${still}\n`,
-  );
 }
 
 test('a pose of the library is dragged to the timeline, searched for and filtered', async ({ page }) => {
@@ -125,13 +103,6 @@ test('a frame of a BVH file is chosen, placed and saved; a broken file says so a
   const [placed] = await keys(page);
   expect(placed.name).toBe('swing 2');
   expect(placed.rotations[16 * 3 + 2]).toBeCloseTo(-1, 4);
-  const results = await new AxeBuilder({ page })
-    .include('.inspector')
-    .withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa'])
-    .analyze();
-  expect(results.violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(', ')}`)).toEqual(
-    [],
-  );
   await page.locator('.pose-import').getByRole('button', { name: 'Save', exact: true }).click();
   await page.getByRole('button', { name: 'Close the file' }).click();
   await expect(own(page).locator('.pose-tile')).toHaveText(['swing 2']);
@@ -156,13 +127,6 @@ test('without a mouse: through the grid by arrow keys, adding, copying, renaming
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('Enter');
   await expect(own(page).locator('.pose-tile')).toHaveText(['A-pose']);
-  const results = await new AxeBuilder({ page })
-    .include('.inspector')
-    .withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa'])
-    .analyze();
-  expect(results.violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(', ')}`)).toEqual(
-    [],
-  );
 
   await own(page).locator('.pose-tile').focus();
   await page.keyboard.press('F2');

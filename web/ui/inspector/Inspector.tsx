@@ -28,7 +28,8 @@ export function Inspector() {
       End: TABS.length - 1,
     };
     const target = targets[event.key];
-    if (target === undefined) return;
+    // With Alt an arrow is a key of the table.
+    if (target === undefined || event.altKey || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     const next = TABS[(target + TABS.length) % TABS.length].id;
     store.showPanel(next);

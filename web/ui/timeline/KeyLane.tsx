@@ -85,6 +85,9 @@ export function KeyLane() {
           <span class="lane-words">Drag a pose here, or choose one in the list: it lands on a beat.</span>
         </p>
       )}
+      {state.duration.value === 0 && state.songJob.value === null && (
+        <p class="lane-hint">Drop a song on the page: its beats appear here, and poses land on them.</p>
+      )}
       <div class="key-rail" ref={rail} role="presentation">
         {buttons}
       </div>

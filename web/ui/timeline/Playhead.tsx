@@ -77,6 +77,9 @@ export function Playhead() {
         aria-valuenow={tenth.value}
         aria-valuetext={place.value}
         title="Playhead: arrows move by a beat, with Shift by a frame"
+        onFocus={(event) => {
+          if (event.currentTarget.matches(':focus-visible')) store.revealTime(state.time.value);
+        }}
         onKeyDown={onKeyDown}
         onPointerDown={onPointerDown}
       />
