@@ -37,7 +37,8 @@ const offline = VitePWA({
   workbox: {
     globPatterns: ['index.html', 'assets/*.{js,mjs,css}'],
     // Only pages with a graphics processor want the WebGPU build.
-    globIgnores: ['**/*jspi*'],
+    // So does what makes videos wait for somebody who wants one.
+    globIgnores: ['**/*jspi*', '**/video.worker*'],
     navigateFallback: 'index.html',
     clientsClaim: true,
     skipWaiting: false,

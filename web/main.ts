@@ -31,6 +31,7 @@ import './style-report.css';
 import './style-curves.css';
 import './style-project.css';
 import './style-export.css';
+import './style-video.css';
 import './style-share.css';
 import './style-phone.css';
 import './style-contrast.css';

@@ -11,6 +11,7 @@ import { ThumbnailsContext, type Thumbnails } from './thumbs';
 import { Timeline } from './timeline/Timeline';
 import { TopBar } from './TopBar';
 import { Tour } from './tour/Tour';
+import { VideoPanel } from './video/VideoPanel';
 import { Transport } from './Transport';
 
 /** The whole page: one stage, one timeline, one inspector. */
@@ -32,6 +33,7 @@ export function App({ store, thumbnails }: { store: Store; thumbnails: Thumbnail
           <Notices />
           <HelpOverlay />
           <ExportPanel />
+          <VideoPanel />
           <Tour />
           <DropOverlay />
         </div>

@@ -68,6 +68,13 @@ export function SaveMenu() {
           onClick={then(() => store.toggleExport(true))}
         />
         <Entry
+          icon="follow"
+          text="Save as a video"
+          hint="MP4 or WebM with the song, wide, square or upright"
+          shortcut="video"
+          onClick={then(() => store.toggleVideo(true))}
+        />
+        <Entry
           icon="share"
           text="Share as a link"
           hint="The whole dance in an address"

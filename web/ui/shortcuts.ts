@@ -325,6 +325,14 @@ export const SHORTCUTS: readonly Shortcut[] = [
     run: (store) => store.toggleExport(true),
   },
   {
+    id: 'video',
+    keys: ['Mod+Shift+E'],
+    label: 'Save the dance as a video',
+    group: 'Project',
+    everywhere: true,
+    run: (store) => store.toggleVideo(true),
+  },
+  {
     id: 'generate',
     keys: ['G'],
     label: 'Generate the dance',

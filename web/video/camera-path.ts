@@ -164,6 +164,31 @@ export function cameraPath(
   return path;
 }
 
+/** A distance that is enough for most of a shot. */
+function usualOf(needed: readonly number[]): number {
+  return [...needed].sort((a, b) => a - b)[Math.floor((needed.length - 1) * 0.85)];
+}
+
+/** What a shot has to show: points of the body, and between which heights they are in all of its frames, metres. */
+interface Subject {
+  points: readonly number[];
+  low: number;
+  high: number;
+}
+
+function subjectOf({ from, to }: Shot, body: Float32Array, what: Shot['body']): Subject {
+  const points = what === 'whole' ? WHOLE : UPPER;
+  // All of a figure has its feet on the floor.
+  let [low, high] = [what === 'whole' ? 0 : Infinity, -Infinity];
+  for (let frame = from; frame < to; frame++)
+    for (const point of points) {
+      const y = body[(frame * BODY.length + point) * 3 + 1];
+      low = Math.min(low, y - BODY[point].radius);
+      high = Math.max(high, y + BODY[point].radius);
+    }
+  return { points, low, high: Math.max(high, low + LEAST_HEIGHT[what]) };
+}
+
 function film(
   shot: Shot,
   body: Float32Array,
@@ -172,35 +197,36 @@ function film(
   tangent: { across: number; up: number },
   path: CameraPath,
 ): void {
-  const points = shot.body === 'whole' ? WHOLE : UPPER;
+  const { points, low, high } = subjectOf(shot, body, shot.body);
   const length = shot.to - shot.from;
-  // What has to be seen reaches from the lowest to the highest point of the shot.
-  let [low, high] = [shot.body === 'whole' ? 0 : Infinity, -Infinity];
-  for (let frame = shot.from; frame < shot.to; frame++)
-    for (const point of points) {
-      const y = body[(frame * BODY.length + point) * 3 + 1];
-      low = Math.min(low, y - BODY[point].radius);
-      high = Math.max(high, y + BODY[point].radius);
-    }
-  const least = LEAST_HEIGHT[shot.body];
-  const height = Math.max((low + Math.max(high, low + least)) / 2, 0.5);
   const azimuthAt = (i: number) => shot.azimuth + (shot.turn * i) / Math.max(1, length - 1);
-  const needed = Array.from({ length }, (_, i) => {
-    let distance = least / 2 / tangent.up;
-    for (const point of points) {
-      const at = ((shot.from + i) * BODY.length + point) * 3;
-      const offset: [number, number, number] = [
-        body[at] - centre[i * 2],
-        body[at + 1] - height,
-        body[at + 2] - centre[i * 2 + 1],
-      ];
-      const { radius } = BODY[point];
-      distance = Math.max(distance, neededDistance(offset, radius, azimuthAt(i), shot.elevation, tangent));
-    }
-    return distance;
-  });
+  /** The distance that every frame needs, looking at this height. */
+  const neededAt = (height: number) =>
+    Array.from({ length }, (_, i) => {
+      let distance = LEAST_HEIGHT[shot.body] / 2 / tangent.up;
+      for (const point of points) {
+        const at = ((shot.from + i) * BODY.length + point) * 3;
+        const offset: [number, number, number] = [
+          body[at] - centre[i * 2],
+          body[at + 1] - height,
+          body[at + 2] - centre[i * 2 + 1],
+        ];
+        const { radius } = BODY[point];
+        distance = Math.max(distance, neededDistance(offset, radius, azimuthAt(i), shot.elevation, tangent));
+      }
+      return distance;
+    });
+  let height = Math.max((low + high) / 2, 0.5);
+  let needed = neededAt(height);
+  if (shot.body === 'upper') {
+    // An upright picture as wide as the arms is higher than the upper body: the room goes to the legs, not above the head.
+    const whole = subjectOf(shot, body, 'whole');
+    const half = usualOf(needed) * tangent.up;
+    height = Math.max((whole.low + whole.high) / 2, Math.min(height, high - half));
+    needed = neededAt(height);
+  }
   // Mostly one distance; only what is wider than usual moves the camera back.
-  const usual = [...needed].sort((a, b) => a - b)[Math.floor((length - 1) * 0.85)];
+  const usual = usualOf(needed);
   const distances = smoothAbove(
     needed.map((distance) => Math.max(distance, usual)),
     EASE.distance * fps,

@@ -99,6 +99,17 @@ function Contents() {
           <FormatChoice key={each.format} card={each} />
         ))}
       </fieldset>
+      <button
+        type="button"
+        class="secondary full"
+        onClick={() => {
+          store.toggleExport(false);
+          store.toggleVideo(true);
+        }}
+      >
+        <Icon name="follow" />
+        Save as a video with the song instead
+      </button>
       <Options card={card} parts={parts} part={part} />
       <div class="export-foot">
         <p>
