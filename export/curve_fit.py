@@ -2,7 +2,7 @@
 
     python export/curve_fit.py --data DATA --features FEATURES --out export/results/danceformer-fit
 
-Key poses are the real poses on beats (every beat, every second, every fourth). Between two keys one curve for each of the 99 channels, with
+Key poses are the real poses on beats (every beat, every second beat). Between two keys one curve for each of the 99 channels, with
 K inner knots; fitted by Adam to the channels of all frames at once, T, C, B held in -1..1 by tanh. Forms:
   `knots`    inner knots only, T = C = B = 0: K + 1 numbers an interval and channel, its first key included
   `sparse`   T, C, B only where they earn it (a small price on each; those under 0.05 are set to 0 and not counted)
@@ -91,7 +91,7 @@ def keys_of(clip: Clip, step: int) -> Tensor:
     return beats[::step]
 
 
-def measure(clips: list[Clip], steps: tuple[int, ...] = (1, 2, 4), forms: tuple[str, ...] = FORMS, longest: int = 900) -> list[dict]:
+def measure(clips: list[Clip], steps: tuple[int, ...] = (1, 2), forms: tuple[str, ...] = FORMS, longest: int = 900) -> list[dict]:
     """Rows of the table: source, beats between keys, form -> errors and numbers. At most `longest` frames of a clip."""
     rows = []
     for step in steps:

@@ -2,7 +2,7 @@
 
     python export/export_danceformer.py --suggest RUN/checkpoint.pt --curves RUN/checkpoint.pt --out public/models
 
-NAME.onnx (weights stored as `--form`), NAME.json (manifest), NAME.golden.json + NAME.golden.bin (inputs and outputs of one made-up run by
+NAME.onnx (weights stored as `--form`), NAME.json (manifest), NAME.training.json (commands, settings and log of the run), NAME.golden.json + NAME.golden.bin (inputs and outputs of one made-up run by
 onnxruntime on the shipped file). BatchNorms are folded, attention is plain products, the batch is free, everything else has fixed lengths.
 """
 
@@ -182,17 +182,34 @@ def load(path: Path) -> tuple[str, nn.Module, dict]:
     return name, model.eval(), state
 
 
+def write_training(out: Path, name: str, checkpoint: Path) -> None:
+    """NAME.training.json: the runs (commands, settings, data hash, commit) and the log of a checkpoint's folder. Folders of this machine
+    are named by what is in them."""
+    read = lambda file: [json.loads(line) for line in (checkpoint.parent / file).read_text(encoding="utf-8").splitlines()]  # noqa: E731
+    runs = read("runs.jsonl")
+    for run_ in runs:
+        words = run_["command"].split()
+        for flag, word in (("--data", "DATA"), ("--features", "FEATURES15"), ("--song-features", "FEATURES53"), ("--out", f"export/runs/{name}")):
+            if flag in words:
+                words[words.index(flag) + 1] = word
+        words[1] = "export/train_danceformer.py"
+        run_["command"] = " ".join(words)
+        run_["settings"]["song_features"] = "FEATURES53"
+    (out / f"{name}.training.json").write_text(json.dumps({"runs": runs, "log": read("log.jsonl")}, indent=1) + "\n", encoding="utf-8")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--suggest", type=Path, help="checkpoint of stage 1")
     parser.add_argument("--curves", type=Path, help="checkpoint of stage 2")
-    parser.add_argument("--form", choices=["fp32", "fp16", "q8"], default="q8")
+    parser.add_argument("--form", choices=["fp32", "fp16", "q8", "q6"], default="q8")
     parser.add_argument("--out", type=Path, required=True)
     args = parser.parse_args()
     torch.set_num_threads(1)
     for path in filter(None, (args.suggest, args.curves)):
         name, model, state = load(path)
         write_model(args.out, name, model, args.form, {"trainingSteps": state["step"]})
+        write_training(args.out, name, path)
 
 
 if __name__ == "__main__":

@@ -143,14 +143,16 @@ class Suggester(nn.Module):
         tokens = self.wave.embed(music) * known[..., None] + self.no_music * (1 - known[..., None])
         return self.wave.encode(tokens + self.style(style)[:, None], mask)
 
-    def decode(self, rotations: Tensor, step: Tensor, known: Tensor, heard: Tensor, first: int) -> Tensor:
+    def decode(self, rotations: Tensor, step: Tensor, known: Tensor, heard: Tensor, first: int, earlier: Tensor | None = None) -> Tensor:
         """Poses [B, N, ...] (token i predicts the beat after pose i) -> features [J, B, N, D].
 
-        `known` [B, N + 1] of the poses and of the one before the first; `heard` [B, M, W] with the beat that token 0 predicts at `first`.
+        `known` [B, N + 1] of the poses and of the one before the first; `heard` [B, M, W] with the beat that token 0 predicts at `first`;
+        `earlier` [B, 1, 144] rotations of the pose before the first, where there is one.
         """
         count = rotations.shape[1]
         joints = to_joints(rotations)
-        before = torch.cat([joints[:, :, :1], joints[:, :, :-1]], 2)
+        start = joints[:, :, :1] if earlier is None else to_joints(earlier)
+        before = torch.cat([start, joints[:, :, :-1]], 2)
         both = known[:, 1:] * known[:, :-1]
         change = (joints - before) * both[None, :, :, None]
         whole = torch.cat([step, both[..., None]], -1)[None].expand(JOINT_COUNT, -1, -1, -1)
@@ -224,7 +226,8 @@ class Suggester(nn.Module):
         rotations, step = steps(poses, pose_mask)
         heard = self.hear(music, music_mask, style)
         # Token i stands for pose i + 1 of the 16 and predicts the beat after it; the last one predicts beat PAST_BEATS of the music.
-        x = self.decode(rotations, step, pose_mask, heard, PAST_BEATS - (PAST_POSES - 2))[:, :, -1:]
+        earlier = without_heading(poses[:, :1], *facing(poses[:, :1]))
+        x = self.decode(rotations, step, pose_mask, heard, PAST_BEATS - (PAST_POSES - 2), earlier)[:, :, -1:]
         given = (next_beats > 0).to(poses)[:, None]
         target = next_pose * given + stand[:ROTATION_SIZE] * (1 - given)
         ahead_sine, ahead_cosine = facing(target)
