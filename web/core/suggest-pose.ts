@@ -8,6 +8,9 @@ import { spec } from './spec';
 export const ROW_SIZE = spec.model.motionSize;
 const ROTATION_SIZE = spec.model.rotationSize;
 
+/** Steps in a radian that suggested poses are rounded to, 0.006 degrees: a song of them stays a small file. */
+const STEPS = 10_000;
+
 /** A key pose as the model's 144 rotation numbers; the root is left at 0. */
 export function rowOfPose(rotations: readonly number[]): Float32Array {
   const row = new Float32Array(ROW_SIZE);
@@ -24,7 +27,8 @@ export function poseOfRow(row: ArrayLike<number>): number[] {
     for (let i = 0; i < 6; i++) sixD[i] = row[joint * 6 + i];
     quaternions.set(sixDToQuaternion(sixD, q), joint * 4);
   }
-  return quaternionsToPose(clampPose(quaternions));
+  // + 0: no minus zero.
+  return quaternionsToPose(clampPose(quaternions)).map((value) => Math.round(value * STEPS) / STEPS + 0);
 }
 
 /** Farthest way over the floor from beat to beat, and heights of a pelvis, metres: a root that runs away would carry the poses along. */
