@@ -1,5 +1,6 @@
 import { describe, expect, it, vi } from 'vitest';
 import { Player } from '../../web/audio/player';
+import { motionHash } from '../../web/app/hash';
 import { createStore } from '../../web/app/store';
 import type { DanceRequest, DanceResult, Services } from './support/app';
 import { fakeReporter, fakeServices, settled, SONG_SECONDS } from './support/app';
@@ -163,7 +164,14 @@ describe('dances', () => {
     expect(request.options).toEqual({ keyStrength: 0.5, variation: 0.7, seed: 9, cleanFeet: true });
     expect(request.keyPoses).toHaveLength(1);
     expect(request.frames).toBe(Math.ceil(SONG_SECONDS * 30));
-    expect(summary).toEqual({ backend: 'wasm', model: 'light', frames: request.frames, milliseconds: 5, windows: 1 });
+    expect(summary).toMatchObject({
+      backend: 'wasm',
+      model: 'light',
+      frames: request.frames,
+      milliseconds: 5,
+      windows: 1,
+    });
+    expect(summary.motionHash).toBe(await motionHash(store.state.dance.value!.motion));
     expect(store.state.stale.value).toBe(false);
     store.addKey(pose(), 2);
     expect(store.state.stale.value).toBe(true);
