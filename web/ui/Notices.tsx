@@ -1,6 +1,5 @@
 import { Icon } from './Icon';
 import { UpdateNotice } from './share/UpdateNotice';
-import { WantedSong } from './share/WantedSong';
 import { useStore } from './store-context';
 
 /** Messages to the visitor; errors stay until dismissed. */
@@ -19,7 +18,6 @@ export function Notices() {
           </div>
         )}
         <UpdateNotice />
-        <WantedSong />
         {store.state.notices.value.map(({ id, kind, text, action }) => (
           <div key={id} class={`notice ${kind}`} role={kind === 'error' ? 'alert' : 'status'}>
             <Icon name={kind === 'error' ? 'warning' : 'info'} />

@@ -7,6 +7,7 @@ import { chooseFile } from './files';
 import { onStageKey } from './pose/stage-keys';
 import { ToolStrip } from './pose/ToolStrip';
 import { PoseBar } from './PoseBar';
+import { WantedSong } from './share/WantedSong';
 import { tip } from './shortcuts';
 import { OverlayTools } from './stage/OverlayTools';
 import { startStage } from './stage/start';
@@ -87,6 +88,7 @@ function Posing({ hover }: { hover: Signal<JointHover | null> }) {
 /** One line of what this is, one target of what to do. */
 function Welcome() {
   const store = useStore();
+  if (store.state.wanted.value) return <WantedSong />;
   const busy = store.state.songJob.value !== null;
   return (
     <div class="welcome">

@@ -84,6 +84,8 @@ export function tourActions(context: Context) {
     startTour: () => go(0, true),
     /** Shows the steps to somebody who has never seen them. */
     offerTour(): void {
+      // Who came for the dance of a link is not in the way of making one yet.
+      if (state.guest.value) return;
       if (!memory.seen() && state.song.value?.demo && state.tour.value === null) go(0, false);
     },
     nextTourStep(): void {

@@ -3,6 +3,7 @@ import { Notices } from '../Notices';
 import { StageView } from '../StageView';
 import { StoreContext } from '../store-context';
 import { Transport } from '../Transport';
+import { WantedNotice } from './WantedSong';
 
 /** The page inside another one: figure and transport, and the way to the whole page. */
 export function EmbedApp({ store }: { store: Store }) {
@@ -34,6 +35,7 @@ export function EmbedApp({ store }: { store: Store }) {
         </a>
         <Transport />
         <Notices />
+        <WantedNotice />
       </div>
     </StoreContext.Provider>
   );
