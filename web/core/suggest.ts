@@ -52,8 +52,8 @@ export interface SuggestHooks {
 const { pastPoses, codes } = spec.danceformer.suggest;
 /** A suggestion nearer than this to a key pose that stays, beats, would only fight it. */
 const ELBOW_ROOM = 0.6;
-/** The network's temperature at the ends of the variation dial: nearly its likeliest pose, and as varied as real dance. */
-const TEMPERATURES = [0.15, 1] as const;
+/** The network's temperature at the ends of the variation dial: calm, and as varied as real dance. */
+const TEMPERATURES = [0.5, 1] as const;
 /** Samples of one call when alternates are looked for, and calls at most. */
 const ALTERNATE_BATCH = 8;
 const ALTERNATE_CALLS = 3;
