@@ -2,6 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, it } from 'vitest';
 import { Player } from '../../web/audio/player';
 import { rangeName, shortRangeName } from '../../web/app/range-name';
+import { documentOnStage } from '../../web/app/on-stage';
 import { recipeOf } from '../../web/app/recipe';
 import { measureDance } from '../../web/app/report';
 import type { Reporter } from '../../web/app/report-client';
@@ -396,6 +397,42 @@ describe('a comparison', () => {
     store.compare();
     store.leaveCompare();
     same(state.onStage.value!.motion, b);
+  });
+});
+
+describe('the report of compared dances', () => {
+  it('is that of the dance on stage, with its own key poses and beats', async () => {
+    const { store } = await page();
+    await start(store);
+    const { state } = store;
+    const reported = () => state.report.value?.consistencyPerKey.map(({ time }) => time);
+    store.compare();
+    const [first] = documentOf(store).keyPoses;
+    store.selectKey(first.id);
+    store.deleteKeys();
+    await store.generate();
+    await calm();
+    expect(reported()).toEqual([6]);
+    const b = state.report.value;
+    store.compare();
+    await calm();
+    expect(reported()).toEqual([1, 6]);
+    expect(documentOnStage(state).keyPoses).toHaveLength(2);
+    // Beats that change meanwhile are those of B.
+    store.nudgeBeats(1, 'frame');
+    store.showCompared('a');
+    await calm();
+    expect(reported()).toEqual([1, 6]);
+    // What the page's API tells is of the dance of now, whichever is on stage.
+    expect(store.reportNow().consistencyPerKey).toHaveLength(1);
+    store.undo();
+    store.showCompared('b');
+    await calm();
+    expect(state.report.value).toEqual(b);
+    store.compare();
+    store.keepHeld();
+    await calm();
+    expect(reported()).toEqual([1, 6]);
   });
 });
 

@@ -17,7 +17,7 @@ export function compareActions(context: Context, dances: DanceActions) {
   // Whoever works on wants to see what it does: that is B. Another song ends the comparison.
   effect(() => {
     const { keyPoses, ranges, dials, trim, song } = state.document.value;
-    void [keyPoses, ranges, dials, trim, state.dance.value?.uncorrected];
+    void [keyPoses, ranges, dials, trim, state.dance.value?.uncorrected, state.strengthDraft.value];
     const busy = state.generation.value.status !== 'idle';
     untracked(() => {
       const held = state.compare.value;

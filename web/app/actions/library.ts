@@ -89,7 +89,7 @@ export function libraryActions(context: Context, store: PoseStore = createPoseSt
 
     /** Saves the dance's pose at the playhead. */
     saveDancePose(): void {
-      const motion = state.dance.value?.motion;
+      const motion = state.onStage.value?.motion;
       if (!motion || motion.frames === 0) {
         context.notify('info', 'There is no dance to take a pose from yet: generate one first.');
         return;

@@ -5,6 +5,7 @@ import { sliceMotion } from '../../core/motion';
 import spec from '../../core/spec.json';
 import type { Motion } from '../../core/types';
 import { onGrid, type Context } from '../context';
+import { documentOnStage } from '../on-stage';
 import type { DanceActions } from './dance';
 
 /** Seconds that the second dance has to find into the key poses before the stretch, and that it goes on after it. */
@@ -27,7 +28,7 @@ export function pictureActions(context: Context, dances: DanceActions) {
 
   return {
     /**
-     * Dances a stretch from another starting clip, with the document's key poses and dials; document and dance stay as they are.
+     * Dances a stretch from another starting clip, with the key poses and dials of the dance on stage; document and dance stay as they are.
      * @param range seconds
      * @param clipId of the starting clip
      * @returns the frames of the stretch
@@ -48,7 +49,7 @@ export function pictureActions(context: Context, dances: DanceActions) {
         await dances.loadModel();
         const heard = await context.analysed();
         both.throwIfAborted();
-        const { keyPoses, dials, grid } = state.document.value;
+        const { keyPoses, dials, grid } = documentOnStage(state);
         const { fps } = spec;
         const first = Math.floor(range.start * fps);
         const last = Math.min(state.frames.value, Math.ceil(range.end * fps));

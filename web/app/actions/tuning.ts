@@ -19,8 +19,7 @@ export function tuningActions(context: Context, reporter: Reporter, dances: Danc
   let wanted: { strength: number; keyPoses: readonly KeyPose[] } | null = null;
   let plotting: AbortController | null = null;
 
-  const tunable = (): (TunableDance & { dance: Dance; inputs: DanceInputs }) | null => {
-    const dance = state.dance.value;
+  const tunable = (dance = state.dance.value): (TunableDance & { dance: Dance; inputs: DanceInputs }) | null => {
     if (!dance?.uncorrected || !dance.inputs) return null;
     const { uncorrected, motion, inputs } = dance;
     return { dance, inputs, uncorrected, motion, keyPoses: inputs.keyPoses };
@@ -41,19 +40,21 @@ export function tuningActions(context: Context, reporter: Reporter, dances: Danc
       state.dance.value = { ...shown, ...change };
       return true;
     };
+    const grid = state.grid.value;
     try {
       const { motion, report } = await reporter.finish(
         { uncorrected, motion: now.motion, keyPoses: wish.keyPoses },
         {
           strength,
-          grid: state.grid.value,
+          grid,
           ...(live ? { near: services.player.time() * now.motion.fps } : {}),
           onDraft: (draft) => void swap({ motion: draft }),
         },
       );
       batch(() => {
         const inputs = { ...(state.dance.value?.inputs ?? now.inputs), keyPoses: wish.keyPoses };
-        if (swap({ motion, keyStrength: strength, inputs })) dances.showReport(motion, report);
+        if (swap({ motion, keyStrength: strength, inputs }))
+          dances.showReport(motion, report, { keyPoses: wish.keyPoses, grid });
       });
       if (state.dance.value?.motion !== motion) return;
       if (state.dance.value.byDials) cache.remember(state.dance.value, state.song.value?.reference.hash ?? '');
@@ -130,7 +131,7 @@ export function tuningActions(context: Context, reporter: Reporter, dances: Danc
 
     /** Works out consistency against smoothness of the dance on stage, unless that is done or under way. */
     async plotTradeOff(): Promise<void> {
-      const now = tunable();
+      const now = tunable(state.onStage.value);
       if (!now || now.keyPoses.length === 0) {
         plotting?.abort();
         state.tradeOff.value = null;

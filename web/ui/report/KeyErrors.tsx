@@ -1,4 +1,5 @@
 import { useSignal } from '@preact/signals';
+import { documentOnStage } from '../../app/on-stage';
 import type { KeyError } from '../../core/report-curves';
 import { CLOSE_ERROR, EXACT_ERROR } from '../../app/report-reference';
 import { useStore } from '../store-context';
@@ -12,8 +13,10 @@ const PAGE = 40;
 export function KeyErrors({ errors }: { errors: readonly KeyError[] }) {
   const store = useStore();
   const shown = useSignal(PAGE);
-  const { document, selection, dance } = store.state;
-  const keys = new Map((dance.value?.inputs?.keyPoses ?? document.value.keyPoses).map((key) => [key.id, key]));
+  const { document, selection, onStage } = store.state;
+  const keys = new Map(
+    (onStage.value?.inputs?.keyPoses ?? documentOnStage(store.state).keyPoses).map((key) => [key.id, key]),
+  );
   // Bars compare the poses with each other; exact ones have none, and all-but-exact ones stay short.
   const longest = Math.max(CLOSE_ERROR, ...errors.map((each) => each.error));
   const allExact = errors.every((each) => each.error < EXACT_ERROR);

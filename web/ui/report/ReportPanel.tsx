@@ -19,12 +19,12 @@ import {
 
 /** How good the dance on stage is. */
 export function ReportPanel() {
-  const { report, stale, dance, generation } = useStore().state;
+  const { report, stale, onStage, compare, generation } = useStore().state;
   const now = report.value;
   if (!now) {
     return (
       <p class="empty">
-        {dance.value && dance.value.kind !== 'preview'
+        {onStage.value && onStage.value.kind !== 'preview'
           ? 'Measuring the dance …'
           : 'Generate a dance, and this page tells how good it is: how close to your poses, how well on the beat, how smooth.'}
       </p>
@@ -37,12 +37,17 @@ export function ReportPanel() {
   const freeze = freezeVerdict(now);
   return (
     <>
-      {stale.value && generation.value.status === 'idle' && (
+      {compare.value?.shown === 'a' ? (
+        <p class="report-stale">
+          <Icon name="info" size={16} />
+          <span>This is A, the dance you held.</span>
+        </p>
+      ) : stale.value && generation.value.status === 'idle' ? (
         <p class="report-stale">
           <Icon name="info" size={16} />
           <span>Poses or settings changed since: this is the dance you see.</span>
         </p>
-      )}
+      ) : null}
       <Card title="Your key poses" tone="key" verdict={keys}>
         {keys ? <KeyErrors errors={now.consistencyPerKey} /> : <p class="hint">This dance has no key poses.</p>}
       </Card>

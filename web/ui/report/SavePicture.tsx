@@ -1,4 +1,5 @@
 import { useComputed, useSignal } from '@preact/signals';
+import { documentOnStage } from '../../app/on-stage';
 import { clockTime } from '../../app/snapping';
 import { Icon } from '../Icon';
 import { useStore } from '../store-context';
@@ -17,7 +18,7 @@ export function SavePicture() {
   const { state } = store;
   const picked = useSignal<string | null>(null);
   const seeds = state.seeds.value;
-  const first = state.dance.value?.inputs?.dials.seedClip ?? state.document.value.dials.seedClip;
+  const first = state.onStage.value?.inputs?.dials.seedClip ?? documentOnStage(state).dials.seedClip;
   const others = seeds.filter((clip) => clip.id !== (first || seeds[0]?.id));
   const second = others.find((clip) => clip.id === picked.value) ?? others[0];
   // The clock itself would render the panel sixty times a second.

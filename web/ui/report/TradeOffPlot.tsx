@@ -1,5 +1,6 @@
 import { useComputed, useSignalEffect } from '@preact/signals';
 import { useRef } from 'preact/hooks';
+import { documentOnStage } from '../../app/on-stage';
 import { tradeOffAt } from '../../core/report-curves';
 import { REAL_DANCE } from '../../app/report-reference';
 import { useStore } from '../store-context';
@@ -16,13 +17,13 @@ export function TradeOffPlot() {
   const picture = useRef<SVGSVGElement>(null);
 
   useSignalEffect(() => {
-    void state.dance.value?.uncorrected;
-    void state.dance.value?.inputs?.keyPoses;
+    void state.onStage.value?.uncorrected;
+    void state.onStage.value?.inputs?.keyPoses;
     if (state.generation.value.status === 'idle') void store.plotTradeOff();
   });
-  const hasKeys = useComputed(() => (state.dance.value?.inputs?.keyPoses.length ?? 0) > 0);
+  const hasKeys = useComputed(() => (state.onStage.value?.inputs?.keyPoses.length ?? 0) > 0);
   const shown = state.tradeOff.value;
-  const tunable = state.dance.value?.uncorrected !== undefined;
+  const tunable = state.onStage.value?.uncorrected !== undefined;
   if (!hasKeys.value || !tunable) {
     return (
       <p class="hint">
@@ -35,7 +36,7 @@ export function TradeOffPlot() {
   const points = shown?.points ?? [];
   if (points.length < 2) return <div class="trade-off waiting">Trying all key strengths …</div>;
 
-  const strength = state.strengthDraft.value ?? state.document.value.dials.keyStrength;
+  const strength = state.strengthDraft.value ?? documentOnStage(state).dials.keyStrength;
   const axes = axesOf(points);
   const now = tradeOffAt(points, strength)!;
   const at = place(now, axes);

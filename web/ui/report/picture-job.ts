@@ -1,5 +1,6 @@
 /** Making the picture of two dances, in the background: it goes on while other panels are shown, and can be stopped. */
 import { signal } from '@preact/signals';
+import { documentOnStage } from '../../app/on-stage';
 import { EXACT_ERROR } from '../../app/report-reference';
 import type { Store } from '../../app/store';
 import { sliceMotion } from '../../core/motion';
@@ -32,15 +33,15 @@ export async function savePicture(store: Store, stretch: Stretch, clipId: string
     if (!stop.aborted) pictureJob.value = { text, fraction };
   };
   const { state } = store;
-  const shown = state.dance.value;
+  const shown = state.onStage.value;
   let artist: FigureArtist | null = null;
   try {
     if (!shown || shown.kind === 'preview') throw new Error('There is no dance yet: generate one first.');
     // All of it is of this moment, whatever the visitor does meanwhile.
     const { song, grid, report, seeds } = state;
     const [music, beats, strength] = [song.value, grid.value, report.value?.consistencyError ?? NaN];
-    const keys = shown.inputs?.keyPoses ?? state.document.value.keyPoses;
-    const firstClip = shown.inputs?.dials.seedClip ?? state.document.value.dials.seedClip;
+    const keys = shown.inputs?.keyPoses ?? documentOnStage(state).keyPoses;
+    const firstClip = shown.inputs?.dials.seedClip ?? documentOnStage(state).dials.seedClip;
     const nameOf = (id: string) => (seeds.value.find((clip) => clip.id === id) ?? seeds.value[0])?.name ?? 'Dance';
     tell('Dancing it another way', 0.02);
     const second = await store.secondDance(stretch, clipId, (done) => tell('Dancing it another way', done * 0.6), stop);

@@ -52,7 +52,7 @@ function bindGhosts(stage: Stage, { state }: Store): () => void {
     const { time } = middle.peek()!;
     const { keyPoses } = state.document.value;
     if (state.draft.value) return stage.setGhosts(ghostsAround(keyPoses, time, null, false));
-    const motion = state.dance.value?.motion ?? null;
+    const motion = state.onStage.value?.motion ?? null;
     stage.setGhosts(ghostsAround(keyPoses, time, motion?.frames ? motion : null, !state.stale.value));
   });
 }

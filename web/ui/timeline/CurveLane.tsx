@@ -1,4 +1,5 @@
 import { useComputed } from '@preact/signals';
+import { documentOnStage } from '../../app/on-stage';
 import spec from '../../core/spec.json';
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
@@ -17,8 +18,8 @@ export function CurveLane() {
     duration: state.duration.value,
     report: state.report.value,
     features: state.song.value?.features ?? null,
-    grid: state.grid.value,
-    fps: state.dance.value?.motion.fps ?? spec.fps,
+    grid: documentOnStage(state).grid ?? state.song.value?.grid ?? null,
+    fps: state.onStage.value?.motion.fps ?? spec.fps,
   }));
   const canvas = usePainter(picture, drawCurves);
 
