@@ -139,6 +139,11 @@ test('every format is saved from the panel, and is the dance on stage', async ({
   expect(inGlb(bones.bytes).joints).toBe(24);
   expect(bones.bytes.length).toBeLessThan(glb.bytes.length / 2);
 
+  await choose(page, /FBX/);
+  const fbx = await saved(page);
+  expect(fbx.name).toBe('Warm Circuit.fbx');
+  expect(text(fbx.bytes.subarray(0, 18))).toBe('Kaydara FBX Binary');
+
   await choose(page, /BVH/);
   await choose(page, '60');
   await choose(page, /^Metres/);

@@ -92,7 +92,7 @@ describe('exporting the dance', () => {
     await dance();
     await expect(api.exportAs('bvh', { fps: 29 })).rejects.toThrow('24, 30, 60, 120');
     await expect(api.exportAs('bvh', { units: 'inch' as 'm' })).rejects.toThrow('"m" or "cm"');
-    await expect(api.exportAs('fbx' as 'bvh')).rejects.toThrow('no export format "fbx"');
+    await expect(api.exportAs('dae' as 'bvh')).rejects.toThrow('no export format "dae"');
   });
 
   it('tells its progress; a newer file, or cancelling, ends an older one', async () => {

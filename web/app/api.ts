@@ -36,7 +36,7 @@ export interface PosebeatApi {
   motion(): { fps: number; rotations: Float32Array; root: Float32Array };
   report(): DanceReport;
   /**
-   * A file. `bvh`, `glb`, `npz` (SMPL: AIST++ and AMASS names) and `json` hold the dance on stage; `project` is JSON text, or with
+   * A file. `bvh`, `glb`, `fbx`, `npz` (SMPL: AIST++ and AMASS names) and `json` hold the dance on stage; `project` is JSON text, or with
    * `song: true` a zip with the song's own bytes inside (both open again as `.posebeat`). `curves` is the dance of engine "curves": our
    * JSON, or with `as: 'glb'` an animation of cubic splines.
    */
@@ -104,7 +104,9 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
         return store.exportMotion(format as MotionFormat, options);
       }
       if (format === 'curves') return store.exportCurves(options.as);
-      throw new Error(`There is no export format "${String(format)}": use bvh, glb, npz, json, curves or project.`);
+      throw new Error(
+        `There is no export format "${String(format)}": use bvh, glb, fbx, npz, json, curves or project.`,
+      );
     },
     exportVideo: async (options = {}) => store.exportVideo(options),
     shareLink: async () => store.shareLink(location.href),

@@ -10,9 +10,9 @@ export type MotionFileReply =
 
 const reply = (message: MotionFileReply, transfer: Transferable[] = []) => self.postMessage(message, { transfer });
 
-self.onmessage = ({ data }: MessageEvent<MotionFileRequest>) => {
+self.onmessage = async ({ data }: MessageEvent<MotionFileRequest>) => {
   try {
-    const bytes = writeMotionFile(data, (fraction) => reply({ type: 'progress', fraction }));
+    const bytes = await writeMotionFile(data, (fraction) => reply({ type: 'progress', fraction }));
     reply({ type: 'done', bytes }, [bytes.buffer]);
   } catch (error) {
     reply({ type: 'error', message: error instanceof Error ? error.message : String(error) });

@@ -13,10 +13,10 @@ import type { MotionFileRequest } from './motion-formats';
  * @param progress hears of it, 0..1
  * @throws Error when the dance has no frames
  */
-export function writeMotionFile(
+export async function writeMotionFile(
   request: MotionFileRequest,
   progress: (fraction: number) => void = () => undefined,
-): Uint8Array<ArrayBuffer> {
+): Promise<Uint8Array<ArrayBuffer>> {
   const { format, units, name, notes, figure } = request;
   const motion = resampleMotion(request.motion, request.fps);
   // The rest is mostly the writing, which is measured where it takes long.
@@ -28,6 +28,10 @@ export function writeMotionFile(
   if (format === 'json') return text(writeMotionJson(motion, notes));
   const times = frameTimes(motion);
   const samplers = [...motionSamplers(motion, times), ...(figure ? helperSamplers(motion, times) : [])];
-  progress(0.7);
-  return writeGlb({ name, samplers, figure });
+  progress(0.6);
+  const glb = writeGlb({ name, samplers, figure });
+  if (format === 'glb') return glb;
+  // The writer brings three along: nobody loads it who wants no FBX.
+  const { glbToFbx } = await import('../scene/fbx-file');
+  return glbToFbx(glb, motion.fps);
 }

@@ -4,7 +4,7 @@ import type { MotionNotes } from '../core/formats/motion-json';
 import type { Motion } from '../core/types';
 
 /** Formats of motion files. */
-export const MOTION_FORMATS = ['bvh', 'glb', 'npz', 'json'] as const;
+export const MOTION_FORMATS = ['bvh', 'glb', 'fbx', 'npz', 'json'] as const;
 /** One of them. */
 export type MotionFormat = (typeof MOTION_FORMATS)[number];
 /** Frame rates that are offered. */
@@ -22,7 +22,7 @@ export interface MotionFileRequest {
   /** Name of the animation. */
   name: string;
   notes: MotionNotes;
-  /** GLB: the figure that dances; missing = the skeleton alone. */
+  /** GLB and FBX: the figure that dances; missing = the skeleton alone. */
   figure?: GlbFigure;
 }
 
@@ -30,21 +30,27 @@ export interface MotionFileRequest {
 export const MOTION_TYPES: Readonly<Record<MotionFormat, string>> = {
   bvh: 'text/plain',
   glb: 'model/gltf-binary',
+  fbx: 'application/octet-stream',
   npz: 'application/zip',
   json: 'application/json',
 };
 
-/** Bytes per frame and of the rest, measured on dances of ours; the figure adds its mesh and its helper bones. */
-const SIZES: Readonly<Record<MotionFormat | 'figure', { frame: number; rest: number }>> = {
+/** Bytes per frame and of the rest, measured on dances of ours. */
+const SIZES: Readonly<Record<MotionFormat, { frame: number; rest: number }>> = {
   bvh: { frame: 745, rest: 3000 },
   glb: { frame: 400, rest: 8000 },
-  figure: { frame: 330, rest: 1_500_000 },
+  fbx: { frame: 660, rest: 84_000 },
   npz: { frame: 540, rest: 3000 },
   json: { frame: 920, rest: 2500 },
+};
+/** What the figure adds: its mesh and its helper bones. */
+const FIGURE: Readonly<Partial<typeof SIZES>> = {
+  glb: { frame: 330, rest: 1_500_000 },
+  fbx: { frame: 925, rest: 3_000_000 },
 };
 
 /** About how many bytes a file will have. */
 export function estimateBytes(format: MotionFormat, frames: number, figure: boolean): number {
-  const sizes = format === 'glb' && figure ? [SIZES.glb, SIZES.figure] : [SIZES[format]];
+  const sizes = [SIZES[format], ...(figure && FIGURE[format] ? [FIGURE[format]] : [])];
   return sizes.reduce((sum, { frame, rest }) => sum + frame * frames + rest, 0);
 }

@@ -16,7 +16,7 @@ export interface MotionFileOptions {
   fps?: number;
   /** BVH: a unit is a metre or a centimetre. Without it, a centimetre, as most animation programs have it. */
   units?: 'm' | 'cm';
-  /** GLB: with our figure (true, the default), or the skeleton alone. */
+  /** GLB and FBX: with our figure (true, the default), or the skeleton alone. */
   figure?: boolean;
   /**
    * What of the dance: all of it, the part that the song is trimmed to, the selected stretch (the loop), or seconds of the song. Without
@@ -138,7 +138,7 @@ export function exportActions(context: Context) {
           units,
           name: state.document.value.song?.name ?? 'dance',
           notes: notesOf(motion, part),
-          ...(format === 'glb' && withFigure ? { figure: await loadGlbFigure() } : {}),
+          ...((format === 'glb' || format === 'fbx') && withFigure ? { figure: await loadGlbFigure() } : {}),
         },
         job,
         own.signal,

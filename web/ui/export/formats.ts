@@ -29,6 +29,13 @@ export const FORMAT_CARDS: readonly FormatCard[] = [
     choices: ['units'],
   },
   {
+    format: 'fbx',
+    name: 'FBX',
+    text: 'The same for Unity, Maya, 3ds Max and Cinema 4D. Loads its writer first.',
+    hint: 'One unit is a centimetre, as in Maya and Unreal.',
+    choices: ['figure'],
+  },
+  {
     format: 'npz',
     name: 'SMPL (npz)',
     text: 'SMPL rotations for Python and machine learning, under the names of AIST++ and AMASS.',
