@@ -11,6 +11,7 @@ import { writeGlb } from '../../web/core/formats/glb-write';
 import { writeMotionJson } from '../../web/core/formats/motion-json';
 import { writeNpz } from '../../web/core/formats/npz-write';
 import { motionToAxisAngle } from '../../web/core/motion';
+import { glbToFbx } from '../../web/scene/fbx-file';
 import { resampleMotion } from '../../web/core/motion-resample';
 
 const [folder, frames = '61'] = process.argv.slice(2);
@@ -21,7 +22,9 @@ const save = (name: string, content: string | Uint8Array) => writeFileSync(join(
 
 save('dance.bvh', writeBvh(motion, { units: 'm' }));
 save('dance-60-cm.bvh', writeBvh(resampleMotion(motion, 60), { units: 'cm' }));
-save('dance.glb', writeGlb({ name: 'dance', samplers: motionSamplers(motion) }));
+const glb = writeGlb({ name: 'dance', samplers: motionSamplers(motion) });
+save('dance.glb', glb);
+save('dance.fbx', await glbToFbx(glb, motion.fps));
 save('dance.npz', writeNpz(motion));
 save('dance.json', writeMotionJson(motion));
 const joints = Array.from({ length: motion.frames }, (_, frame) => Array.from(jointsOf(motion, frame)));

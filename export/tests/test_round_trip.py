@@ -118,12 +118,14 @@ def test_blender_reads_the_bvh(files, name, scale, step):
     assert np.linalg.norm(seen - truth["joints"], axis=-1).max() < 1e-3
 
 
-def test_blender_reads_the_glb(files):
+@pytest.mark.parametrize("kind", ["glb", "fbx"])
+def test_blender_reads_glb_and_fbx(files, kind):
     bpy = pytest.importorskip("bpy", reason="Blender is not installed: pip install bpy")
     folder, truth = files
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.context.scene.render.fps = int(truth["fps"])
-    bpy.ops.import_scene.gltf(filepath=str(folder / "dance.glb"))
+    read = bpy.ops.import_scene.gltf if kind == "glb" else bpy.ops.import_scene.fbx
+    read(filepath=str(folder / f"dance.{kind}"))
     start, end = bpy.data.actions[0].frame_range
     count = len(truth["joints"])
     assert end - start == pytest.approx(count - 1, abs=1e-3)
