@@ -6,7 +6,7 @@ import { fourPoses, loadSong, open, rejection } from './support/page';
 import { wav } from './support/songs';
 
 const SECONDS = 8;
-const TIMES = [1, 2, 3, 4.5, 6];
+const TIMES = [1, 2, 2.5, 4.5, 6];
 
 /** The page with a song, key poses on its beats and a dance of curves through them. */
 async function dancing(page: Page): Promise<void> {

@@ -20,10 +20,11 @@ import {
 } from './curves';
 import { tidyBeat } from './curves-edit';
 import { followMotion } from './curves-fit';
-import { fillerPoses, headingCurve, KEY_DISTANCE } from './filler';
+import { fillerPoses, headingCurve, KEY_DISTANCE, LONGEST_GAP } from './filler';
 import { headingOf } from './localframe';
 import { sliceMotion } from './motion';
 import { turned } from './motion-blend';
+import { slerp } from './rotation';
 import { seedMotion } from './seed';
 import { JOINT_COUNT } from './skeleton';
 import { spec } from './spec';
@@ -34,8 +35,13 @@ const POSE = JOINT_COUNT * 4;
 export const MOMENTS = spec.danceformer.curve.intervalSteps;
 /** Numbers that it gives a channel: tension, continuity, bias, two inner knots. */
 export const CURVE_SIZE = SHAPE_SIZE + INNER_KNOTS;
-/** Longer gaps between two key poses get poses of the starting clip on their beats: four knots are few for so much dance. */
-const LONGEST_INTERVAL = 1.6;
+/**
+ * Longer gaps between two key poses get poses of the starting clip on their beats, seconds: four knots are few for so much dance. With
+ * key poses 1 s apart and nothing between them no more beats are hit than by SLERP.
+ */
+const LONGEST_INTERVAL = 0.9;
+/** Between two key poses that are not far apart such a pose goes only this share of the way from their straight line to the clip's. */
+const LEAN = 0.5;
 /** Intervals in one run of the network: small enough that cancelling is quick. */
 const BATCH = 48;
 
@@ -169,7 +175,7 @@ function placeKeys(request: CurveRequest, from: number, to: number): PlacedKey[]
         longestGap: LONGEST_INTERVAL,
       },
       heading,
-    );
+    ).map((filler) => leaned(filler, own));
   let fillers = fill(options.seed, options.variation);
   for (const take of request.takes ?? []) {
     const inside = ({ frame }: FrameKey) => frame >= take.from && frame < take.to;
@@ -186,6 +192,20 @@ function placeKeys(request: CurveRequest, from: number, to: number): PlacedKey[]
   if (!keys.length || keys[0].frame - from >= clear) keys.unshift(clipAt(from));
   if (to - 1 - keys[keys.length - 1].frame >= clear) keys.push(clipAt(to - 1));
   return keys;
+}
+
+/** A filler between two near key poses, part of the way from the straight line between them; any other as it is. */
+function leaned(filler: FrameKey, own: readonly PlacedKey[]): FrameKey {
+  const before = own.findLast((key) => key.frame < filler.frame);
+  const after = own.find((key) => key.frame > filler.frame);
+  if (!before || !after || after.frame - before.frame > LONGEST_GAP * spec.fps) return filler;
+  const share = (filler.frame - before.frame) / (after.frame - before.frame);
+  const quaternions = filler.quaternions.slice();
+  for (let j = 0; j < POSE; j += 4) {
+    const straight = slerp(before.quaternions.subarray(j, j + 4), after.quaternions.subarray(j, j + 4), share);
+    slerp(straight, quaternions.subarray(j, j + 4), LEAN, quaternions.subarray(j, j + 4));
+  }
+  return { ...filler, quaternions };
 }
 
 /** A beat that a frame was rounded from. */
