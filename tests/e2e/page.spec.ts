@@ -1,6 +1,6 @@
-import AxeBuilder from '@axe-core/playwright';
 import { expect, test } from '@playwright/test';
-import { collectErrors, open } from './support/page';
+import { collectErrors, loadSong, open } from './support/page';
+import { wav } from './support/songs';
 
 test('the page opens on a demo that is already dancing, with neither model nor runtime loaded', async ({ page }) => {
   const errors = collectErrors(page);
@@ -19,22 +19,6 @@ test('the page opens on a demo that is already dancing, with neither model nor r
   expect(errors).toEqual([]);
 });
 
-for (const [name, viewport] of [
-  ['desktop', { width: 1440, height: 900 }],
-  ['phone', { width: 390, height: 844 }],
-] as const) {
-  test(`on a ${name} nothing is cut off and axe finds no violation of level A or AA`, async ({ page }) => {
-    await page.setViewportSize(viewport);
-    await open(page);
-    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
-    expect(overflow).toBeLessThanOrEqual(0);
-    const results = await new AxeBuilder({ page }).withTags(['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa']).analyze();
-    expect(results.violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.target).join(', ')}`)).toEqual(
-      [],
-    );
-  });
-}
-
 test('the help overlay lists the shortcuts and Escape closes it', async ({ page }) => {
   await open(page);
   await page.keyboard.press('?');
@@ -43,4 +27,47 @@ test('the help overlay lists the shortcuts and Escape closes it', async ({ page 
   await expect(help).toContainText('Generate');
   await page.keyboard.press('Escape');
   await expect(help).toBeHidden();
+});
+
+test('where the camera stands is found again after a reload, and undo does not move it', async ({ page }) => {
+  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
+  await page.setViewportSize({ width: 800, height: 600 });
+  await open(page);
+  await loadSong(page, wav({ seconds: 4 }));
+  const camera = () => page.evaluate(() => window.posebeat.document().camera);
+  /** Which way the camera looks, radians about the upright. */
+  const heading = async () => {
+    const view = (await camera())!;
+    return Math.atan2(view.position[0] - view.target[0], view.position[2] - view.target[2]);
+  };
+  const orbit = async (dx: number) => {
+    const box = (await page.locator('.stage canvas').boundingBox())!;
+    const [x, y] = [box.x + box.width / 2 + 60, box.y + 30];
+    const before = JSON.stringify(await camera());
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + dx, y, { steps: 5 });
+    await page.mouse.up();
+    // Kept when the camera has come to rest.
+    await expect.poll(async () => JSON.stringify(await camera())).not.toBe(before);
+    await page.waitForTimeout(600);
+  };
+  expect(await camera()).toBeNull();
+  await orbit(80);
+  const turned = await heading();
+  expect(Math.abs(turned)).toBeGreaterThan(0.2);
+  await page.locator('.pose-tile').first().click();
+  await page.keyboard.press('Control+z');
+  expect(await heading()).toBe(turned);
+
+  await page.waitForTimeout(1500);
+  await page.reload();
+  await page.evaluate(() => window.posebeat.ready);
+  expect(await heading()).toBe(turned);
+  // The stage itself looks from there: the same way back ends where it began.
+  await page.waitForTimeout(1500);
+  await orbit(-80);
+  expect(Math.abs(await heading())).toBeLessThan(Math.abs(turned) / 3);
+  await page.getByRole('button', { name: 'Show the whole figure' }).click();
+  await expect.poll(camera).toBeNull();
 });

@@ -5,13 +5,16 @@ import { alongTheArm, figure, findJoint, newPose } from './support/posing';
 import { wav } from './support/songs';
 
 // Without a graphics card every pixel of the stage costs.
-test.use({ viewport: { width: 1200, height: 760 } });
+test.use({ viewport: { width: 1200, height: 720 } });
 test.setTimeout(300_000);
 
-const SECONDS = 36;
-/** Beats of a second after tapping, so bars of four. */
-const BAR = 4;
-const song = () => ({ name: 'long road.wav', mimeType: 'audio/wav', buffer: wav({ seconds: SECONDS }) });
+const SECONDS = 25;
+/** The song's own tempo is heard twice as fast as it is tapped, beats per minute. */
+const TEMPO = 168;
+/** Seconds of a beat and of a bar after tapping. */
+const BEAT = 120 / TEMPO;
+const BAR = 4 * BEAT;
+const song = () => ({ name: 'long road.wav', mimeType: 'audio/wav', buffer: wav({ seconds: SECONDS, tempo: TEMPO }) });
 
 const project = (page: Page) => page.evaluate(() => window.posebeat.document());
 const dance = (page: Page) =>
@@ -33,22 +36,22 @@ async function calm(page: Page): Promise<void> {
   await expect(page.locator('.generate')).toHaveClass(/fresh/);
 }
 
-/** Eight taps, a second apart, while the song plays: half of the tempo that was heard. A busy machine taps unevenly: once more, then. */
+/** Eight taps on every second beat while the song plays: half of the tempo that was heard. A busy machine taps unevenly: once more, then. */
 async function tap(page: Page, press: () => Promise<void>): Promise<void> {
   await press(); // starts the song
   await expect(page.getByRole('button', { name: 'Pause' })).toBeVisible();
   for (let attempt = 0; attempt < 4; attempt++) {
     const started = Date.now();
     for (let i = 1; i <= 8; i++) {
-      await page.waitForTimeout(Math.max(0, started + i * 1000 - Date.now()));
+      await page.waitForTimeout(Math.max(0, started + i * BEAT * 1000 - Date.now()));
       await press();
     }
     await expect(page.locator('.tap-text')).toHaveText('Tap');
     const { grid } = await project(page);
-    if (grid && Math.abs(grid.tempo - 60) < 2) return;
+    if (grid && Math.abs(grid.tempo - TEMPO / 2) < 2) return;
     if (grid) await page.keyboard.press('Control+z');
   }
-  throw new Error('Four times eight taps a second apart never gave 60 beats a minute.');
+  throw new Error(`Four times eight even taps never gave ${TEMPO / 2} beats a minute.`);
 }
 
 /** All steps back and all steps on again: the same documents in between, to the last bit, and the same dance. */
@@ -168,7 +171,9 @@ test('by mouse', async ({ page }) => {
     await page.mouse.move(from.x + from.width / 2, from.y + 30);
     await page.mouse.down();
     await page.mouse.move(from.x, from.y + 60, { steps: 3 });
-    await page.mouse.move(lane.x + lane.width * ((bar * BAR + 2.2) / SECONDS), lane.y + lane.height / 2, { steps: 6 });
+    await page.mouse.move(lane.x + lane.width * ((bar * BAR + 2.2 * BEAT) / SECONDS), lane.y + lane.height / 2, {
+      steps: 6,
+    });
     await page.mouse.up();
     expect((await project(page)).keyPoses).toHaveLength(bar + 1);
   }
@@ -225,8 +230,8 @@ test('by keyboard alone', async ({ page }) => {
     throw new Error(`Tab never reached ${selector}.`);
   };
   await open(page, '?backend=wasm');
-  const chooser = page.waitForEvent('filechooser');
   await tabTo('.drop-target');
+  const chooser = page.waitForEvent('filechooser');
   await press('Enter');
   await (await chooser).setFiles(song());
   await expect(page.locator('.song-title')).toContainText('long road.wav');
@@ -290,7 +295,7 @@ test('by keyboard alone', async ({ page }) => {
   const five = (await project(page)).grid!.downbeats[4];
   for (let i = 0; i < 60; i++) {
     const now = Number(await page.locator('.playhead-grip').getAttribute('aria-valuenow'));
-    if (now > five - 0.15) break;
+    if (now > five - BEAT / 6) break;
     await press('ArrowRight');
   }
   await press('l');
