@@ -111,7 +111,8 @@ def follow_buffers(averaged: nn.Module, model: nn.Module, share: float = 0.02) -
 class Trainer:
     """One run: model, discriminator, optimisers, sampler; `step` does one step."""
 
-    def __init__(self, settings: Settings, losses: LossConfig, training: list[Dance], held: list[Dance]) -> None:
+    def __init__(self, settings: Settings, losses: LossConfig, training: list[Dance], held: list[Dance], codes: tuple[Tensor, Tensor, Tensor] | None = None) -> None:
+        """`codes`: those of `find_codes` on the same dances, where they are known already."""
         self.settings, self.losses = settings, losses
         torch.manual_seed(settings.seed)
         self.model = build(settings)
@@ -119,7 +120,8 @@ class Trainer:
         if settings.stage == "suggest":
             rows = settings.rows or 20
             self.sampler = KeySampler(training, rows, settings.beats, settings.seed)
-            centres, rotations, steps_ = find_codes(training, torch.Generator().manual_seed(settings.seed))
+            centres, rotations, steps_ = codes or find_codes(training, torch.Generator().manual_seed(settings.seed))
+            self.codes = (centres, rotations, steps_)
             if settings.head == "regress":
                 rotations, steps_ = rotations.mean(0, keepdim=True).expand(CODES, -1), steps_.mean(0, keepdim=True).expand(CODES, -1)
             self.model.code_rotations.copy_(rotations)
