@@ -202,6 +202,7 @@ test('by keyboard alone; Esc gives the focus back', async ({ page }) => {
   await expect(dialog(page)).toBeVisible();
   await expect(dialog(page).getByRole('radio', { name: /GLB/ })).toBeFocused();
   await page.keyboard.press('ArrowDown');
+  await page.keyboard.press('ArrowDown');
   await expect(dialog(page).getByRole('radio', { name: /BVH/ })).toBeChecked();
   // Keys of the page rest: G would generate.
   await page.keyboard.press('g');

@@ -22,18 +22,18 @@ export const FORMAT_CARDS: readonly FormatCard[] = [
     choices: ['figure'],
   },
   {
+    format: 'fbx',
+    name: 'FBX',
+    text: 'The dancing figure for Unity, Maya, 3ds Max and Cinema 4D.',
+    hint: 'One unit is a centimetre, as in Maya and Unreal.',
+    choices: ['figure'],
+  },
+  {
     format: 'bvh',
     name: 'BVH',
     text: 'The skeleton’s motion, for Blender, Maya, MotionBuilder and most animation programs.',
     hint: 'Most programs take one unit for a centimetre.',
     choices: ['units'],
-  },
-  {
-    format: 'fbx',
-    name: 'FBX',
-    text: 'The same for Unity, Maya, 3ds Max and Cinema 4D. Loads its writer first.',
-    hint: 'One unit is a centimetre, as in Maya and Unreal.',
-    choices: ['figure'],
   },
   {
     format: 'npz',
