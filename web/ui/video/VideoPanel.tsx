@@ -16,7 +16,7 @@ import { sizeText } from '../export/formats';
 import { Segments } from '../export/Segments';
 import { Icon } from '../Icon';
 import { useStore } from '../store-context';
-import { VideoProgress } from './VideoProgress';
+import { takeFocus, VideoProgress } from './VideoProgress';
 
 type Part = 'all' | 'trim' | 'loop';
 
@@ -151,8 +151,9 @@ function Contents() {
           <VideoProgress />
         ) : (
           <button
+            ref={takeFocus}
             type="button"
-            class="primary key-tone"
+            class="primary motion-tone"
             disabled={!made || waits}
             onClick={() => made && void store.saveVideo({ ...options, format: made })}
           >

@@ -1,6 +1,11 @@
 import { leftText } from './left-text';
 import { useStore } from '../store-context';
 
+/** Where the button that was pressed has gone, this one takes its place: else the keyboard would be left on the page behind the dialog. */
+export function takeFocus(button: HTMLButtonElement | null): void {
+  if (button && document.activeElement === document.body) button.focus();
+}
+
 /** How far the video is, how long it still takes, and the way to stop it; as a chip over the page when its panel is closed. */
 export function VideoProgress({ chip = false }: { chip?: boolean }) {
   const store = useStore();
@@ -28,7 +33,12 @@ export function VideoProgress({ chip = false }: { chip?: boolean }) {
           Show
         </button>
       )}
-      <button type="button" class={chip ? 'quiet' : 'secondary'} onClick={() => store.cancelVideo()}>
+      <button
+        ref={chip ? undefined : takeFocus}
+        type="button"
+        class={chip ? 'quiet' : 'secondary'}
+        onClick={() => store.cancelVideo()}
+      >
         {chip ? 'Cancel' : 'Cancel the video'}
       </button>
     </div>

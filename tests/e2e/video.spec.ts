@@ -1,0 +1,203 @@
+/** The dance as a video: made through the page, then read by other programs. */
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import AxeBuilder from '@axe-core/playwright';
+import { expect, test, type Page } from '@playwright/test';
+import { ALL_FORMATS, BufferSource, EncodedPacketSink, Input } from 'mediabunny';
+import { collectErrors, fourPoses, open, rejection } from './support/page';
+
+// Without a graphics card every pixel costs.
+test.use({ viewport: { width: 640, height: 640 } });
+test.setTimeout(300_000);
+
+const FPS = 30;
+/** The part of the demo that is filmed: 2 seconds, in the middle of a bar and of a packet of sound. */
+const PART = { start: 4.31, end: 6.31 };
+const SONG = 'public/demo/song.mp3';
+
+const has = (program: string) => spawnSync(program, ['-version']).status === 0;
+const panel = (page: Page) => page.getByRole('dialog', { name: 'Save as a video' });
+const bar = (page: Page) => page.getByRole('progressbar', { name: 'Making the video' });
+
+/** The demo, standing still, with the part as the selected stretch and the panel open. */
+async function openPanel(page: Page): Promise<void> {
+  await open(page);
+  await page.getByRole('button', { name: 'Pause' }).click();
+  await page.evaluate(
+    ([poses, times]) => window.posebeat.setKeyPoses(times.map((time, i) => ({ time, rotations: poses[i] }))),
+    [fourPoses(), [PART.start, PART.end]] as const,
+  );
+  await page.keyboard.press('Control+a');
+  await page.keyboard.press('l');
+  await page.keyboard.press('Control+Shift+E');
+  await expect(panel(page)).toBeVisible();
+}
+
+async function chooseSmall(page: Page): Promise<void> {
+  await openPanel(page);
+  await panel(page).getByLabel('Size').selectOption('180');
+  await panel(page).getByText('Selected stretch').click();
+}
+
+/** What our own container library finds in a file: codecs, frames and when they begin and end, seconds. */
+async function inside(bytes: Buffer) {
+  const input = new Input({ source: new BufferSource(bytes), formats: ALL_FORMATS });
+  const [video, audio] = [(await input.getPrimaryVideoTrack())!, (await input.getPrimaryAudioTrack())!];
+  const times: number[] = [];
+  for await (const packet of new EncodedPacketSink(video).packets()) times.push(packet.timestamp);
+  return {
+    size: [await video.getDisplayWidth(), await video.getDisplayHeight()],
+    times: times.sort((a, b) => a - b),
+    videoEnd: await video.computeDuration(),
+    audioStart: await audio.getFirstTimestamp(),
+    audioEnd: await audio.computeDuration(),
+  };
+}
+
+/** The same by ffprobe. */
+function probed(file: string) {
+  const args = ['-v', 'error', '-count_frames', '-show_streams', '-show_format', '-of', 'json', file];
+  const { streams, format } = JSON.parse(spawnSync('ffprobe', args, { encoding: 'utf8' }).stdout);
+  const stream = (type: string) => streams.find((each: { codec_type: string }) => each.codec_type === type);
+  return { video: stream('video'), audio: stream('audio'), duration: Number(format.duration) };
+}
+
+/** Seconds by which the sound of a file lags behind the song's own, by where the two are most alike. */
+function lag(file: string, start: number): number {
+  const rate = 16_000;
+  const samples = (name: string) => {
+    const args = ['-v', 'error', '-i', name, '-f', 'f32le', '-ac', '1', '-ar', String(rate), '-'];
+    const { buffer, byteOffset, length } = spawnSync('ffmpeg', args, { maxBuffer: 2 ** 28 }).stdout;
+    return new Float32Array(buffer.slice(byteOffset, byteOffset + length - (length % 4)));
+  };
+  const [film, song] = [samples(file), samples(SONG)];
+  const [from, to, first] = [rate * 0.25, rate * 1.75, Math.round(start * rate)];
+  let best = { score: -Infinity, shift: 0 };
+  for (let shift = -rate / 20; shift <= rate / 20; shift++) {
+    let score = 0;
+    for (let i = from; i < to; i++) score += film[i] * song[first + i - shift];
+    if (score > best.score) best = { score, shift };
+  }
+  return best.shift / rate;
+}
+
+test('a video of the selected stretch has every frame and its sound, and begins with both', async ({ page }) => {
+  const errors = collectErrors(page);
+  const scripts: string[] = [];
+  page.on('request', (request) => scripts.push(request.url()));
+  await page.addInitScript(() => Reflect.deleteProperty(window, 'showSaveFilePicker'));
+  await open(page);
+  expect(scripts.filter((url) => /video/.test(url))).toEqual([]);
+  await chooseSmall(page);
+  await expect(panel(page)).toContainText('320 × 180, 60 frames');
+  await panel(page).getByText('Beat cuts').click();
+  const before = await page.evaluate(() => JSON.stringify(window.posebeat.document()));
+  const [download] = await Promise.all([
+    page.waitForEvent('download', { timeout: 240_000 }),
+    panel(page).getByRole('button', { name: 'Save MP4' }).click(),
+  ]);
+  expect(download.suggestedFilename()).toMatch(/\.mp4$/);
+  const file = test.info().outputPath('dance.mp4');
+  await download.saveAs(file);
+  await expect(page.getByText(/\.mp4 is saved/)).toBeVisible();
+  expect(await page.evaluate(() => JSON.stringify(window.posebeat.document()))).toBe(before);
+
+  const found = await inside(readFileSync(file));
+  expect(found.size).toEqual([320, 180]);
+  expect(found.times).toHaveLength(60);
+  found.times.forEach((time, i) => expect(time).toBeCloseTo(i / FPS, 3));
+  expect(found.videoEnd).toBeCloseTo(2, 2);
+  expect(Math.abs(found.audioStart)).toBeLessThan(1 / FPS);
+  expect(Math.abs(found.audioEnd - 2)).toBeLessThan(1 / FPS);
+  expect(errors).toEqual([]);
+
+  await test.step('ffprobe and ffmpeg agree', () => {
+    if (!has('ffprobe') || !has('ffmpeg')) {
+      const description = 'ffprobe and ffmpeg are not installed: only our own reader looked at the file';
+      test.info().annotations.push({ type: 'left out', description });
+      console.log(`      ${description}`);
+      return;
+    }
+    const { video, audio, duration } = probed(file);
+    expect(Number(video.nb_read_frames)).toBe(60);
+    expect([video.width, video.height, video.r_frame_rate]).toEqual([320, 180, '30/1']);
+    expect(Math.abs(duration - 2)).toBeLessThan(1 / FPS);
+    expect(Math.abs(Number(video.start_time) - Number(audio.start_time))).toBeLessThan(1 / FPS);
+    // MP3 readers differ by some milliseconds themselves.
+    expect(Math.abs(lag(file, PART.start))).toBeLessThan(1 / FPS / 2);
+  });
+});
+
+test('a video goes straight to the disk; a cancelled one leaves nothing there', async ({ page }) => {
+  await page.addInitScript(() => {
+    const ask = async (options: { suggestedName: string }) => {
+      const folder = await navigator.storage.getDirectory();
+      return folder.getFileHandle(options.suggestedName, { create: true });
+    };
+    Object.assign(window, { showSaveFilePicker: ask });
+  });
+  await chooseSmall(page);
+  const bytes = () =>
+    page.evaluate(async () => {
+      const folder = await navigator.storage.getDirectory();
+      const files: Record<string, string> = {};
+      for await (const [name, handle] of folder.entries()) {
+        const buffer = await (await (handle as FileSystemFileHandle).getFile()).arrayBuffer();
+        files[name] = Array.from(new Uint8Array(buffer), (byte) => String.fromCharCode(byte)).join('');
+      }
+      return files;
+    });
+  const save = panel(page).getByRole('button', { name: /^Save (MP4|WebM)$/ });
+
+  await save.click();
+  await expect(bar(page)).toHaveAttribute('aria-valuenow', /^[1-9]/);
+  // The keyboard goes where the pressed button was.
+  await expect(panel(page).getByRole('button', { name: 'Cancel the video' })).toBeFocused();
+  await page.keyboard.press('Enter');
+  await expect(save).toBeEnabled();
+  expect(Object.values(await bytes())).toEqual(['']);
+
+  await panel(page).getByText('WebM', { exact: true }).click();
+  await save.click();
+  // The panel may be closed meanwhile: what is being done stays in sight.
+  await page.keyboard.press('Escape');
+  await expect(page.locator('.video-chip')).toContainText('Making the video');
+  await expect(page.getByText(/\.webm is saved/)).toBeVisible({ timeout: 240_000 });
+  const [, file] = Object.entries(await bytes()).find(([name]) => name.endsWith('.webm'))!;
+  const found = await inside(Buffer.from(file, 'latin1'));
+  expect(found.times).toHaveLength(60);
+  expect(Math.abs(found.audioStart)).toBeLessThan(1 / FPS);
+  expect(Math.abs(found.audioEnd - 2)).toBeLessThan(1 / FPS);
+});
+
+test.describe('a browser without', () => {
+  /** The worker's script with a line before it. */
+  const without = async (page: Page, line: string) => {
+    await page.route(/video\.worker.*\.js/, async (route) => {
+      const response = await route.fetch();
+      await route.fulfill({ response, body: `${line}\n${await response.text()}` });
+    });
+    await openPanel(page);
+  };
+
+  test('video encoders says so and offers other files', async ({ page }) => {
+    await without(page, 'self.VideoEncoder = undefined; delete self.VideoEncoder;');
+    await expect(panel(page)).toContainText('has no video encoder');
+    const call = page.evaluate(() => window.posebeat.exportVideo({ range: { start: 4, end: 4.1 }, size: 180 }));
+    expect(await rejection(call)).toContain('has no video encoder');
+    await panel(page).getByRole('button', { name: 'Other files' }).click();
+    await expect(page.getByRole('dialog', { name: 'Export the dance' })).toBeVisible();
+  });
+
+  test('sound encoders says that the video is silent; wrong options are refused', async ({ page }) => {
+    await without(page, 'self.AudioEncoder = undefined; delete self.AudioEncoder;');
+    await expect(panel(page)).toContainText('has no sound encoder, so the video is silent');
+    await expect(panel(page).getByRole('button', { name: 'Save MP4' })).toBeEnabled();
+    const { violations } = await new AxeBuilder({ page }).include('.video-panel').analyze();
+    expect(violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target).join(', ')}`)).toEqual([]);
+    const refused = (options: object) => rejection(page.evaluate((each) => window.posebeat.exportVideo(each), options));
+    expect(await refused({ size: 700 })).toContain('size must be one of');
+    expect(await refused({ range: { start: 70, end: 80 } })).toContain('inside the dance');
+    expect(await refused({ range: 'trim' })).toContain('not trimmed');
+  });
+});
