@@ -165,6 +165,9 @@ export function shareActions(
     /** Opens or closes the panel with the link. */
     toggleShare: (open = !state.shareOpen.value) => (state.shareOpen.value = open),
 
+    /** The visitor goes on with the demo's song. */
+    dismissWanted: () => (state.wanted.value = null),
+
     /** How many projects were put aside in this browser when a link was opened. */
     async countAside(): Promise<void> {
       state.aside.value = (await services.storage.countAside?.().catch(() => 0)) ?? 0;

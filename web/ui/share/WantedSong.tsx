@@ -38,7 +38,7 @@ export function WantedNotice() {
         <button type="button" class="secondary" onClick={() => chooseFile(store)}>
           Choose that song
         </button>
-        <button type="button" class="tool" aria-label="Dismiss" onClick={() => (wanted.value = null)}>
+        <button type="button" class="tool" aria-label="Dismiss" onClick={() => store.dismissWanted()}>
           <Icon name="close" size={16} />
         </button>
       </div>
