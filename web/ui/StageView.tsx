@@ -13,6 +13,7 @@ import { OverlayTools } from './stage/OverlayTools';
 import { startStage } from './stage/start';
 import { SoundChip, WorkChip } from './stage/StageChips';
 import { useStore } from './store-context';
+import { ToolButton } from './ToolButton';
 
 /** The stage and what lies over it. */
 export function StageView() {
@@ -114,25 +115,13 @@ function CameraTools() {
   const follows = store.state.cameraFollows.value;
   return (
     <div class="camera-tools" role="group" aria-label="Camera">
-      <button
-        type="button"
-        class="tool"
-        aria-pressed={follows}
-        aria-label="Camera follows the dancer"
-        title="Camera follows the dancer"
+      <ToolButton
+        icon="follow"
+        label="Camera follows the dancer"
+        pressed={follows}
         onClick={() => store.toggleCamera()}
-      >
-        <Icon name="follow" />
-      </button>
-      <button
-        type="button"
-        class="tool"
-        aria-label="Show the whole figure"
-        title={tip('frame')}
-        onClick={() => store.frameFigure()}
-      >
-        <Icon name="frame" />
-      </button>
+      />
+      <ToolButton icon="frame" label="Show the whole figure" title={tip('frame')} onClick={() => store.frameFigure()} />
     </div>
   );
 }

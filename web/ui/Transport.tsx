@@ -5,6 +5,7 @@ import { GenerateButton } from './GenerateButton';
 import { Icon } from './Icon';
 import { tip } from './shortcuts';
 import { useStore } from './store-context';
+import { ToolButton } from './ToolButton';
 
 const SPEEDS = [0.25, 0.5, 0.75, 1, 1.25, 1.5].filter((speed) => speed >= SPEED_RANGE.min && speed <= SPEED_RANGE.max);
 
@@ -15,16 +16,14 @@ export function Transport() {
   const off = duration.value === 0;
   return (
     <section class="transport" aria-label="Transport">
-      <button
-        type="button"
-        class="tool wide"
-        disabled={off}
-        aria-label="Previous key pose"
+      <ToolButton
+        icon="skipBack"
+        label="Previous key pose"
         title={tip('key-back')}
+        disabled={off}
+        class="tool wide"
         onClick={() => store.stepKey(-1)}
-      >
-        <Icon name="skipBack" />
-      </button>
+      />
       <button
         type="button"
         class="play"
@@ -35,28 +34,23 @@ export function Transport() {
       >
         <Icon name={playing.value ? 'pause' : 'play'} size={24} />
       </button>
-      <button
-        type="button"
-        class="tool wide"
-        disabled={off}
-        aria-label="Next key pose"
+      <ToolButton
+        icon="skipForward"
+        label="Next key pose"
         title={tip('key-on')}
-        onClick={() => store.stepKey(1)}
-      >
-        <Icon name="skipForward" />
-      </button>
-      <Readout />
-      <button
-        type="button"
-        class="tool"
         disabled={off}
-        aria-pressed={loop.value !== null}
-        aria-label="Loop"
+        class="tool wide"
+        onClick={() => store.stepKey(1)}
+      />
+      <Readout />
+      <ToolButton
+        icon="repeat"
+        label="Loop"
         title={tip('loop', 'Loop four bars, or drag in the ruler')}
+        pressed={loop.value !== null}
+        disabled={off}
         onClick={() => store.toggleLoop()}
-      >
-        <Icon name="repeat" />
-      </button>
+      />
       <label class="speed wide" title="Speed">
         <span class="visually-hidden">Speed</span>
         <select value={String(speed.value)} onChange={(event) => store.setSpeed(Number(event.currentTarget.value))}>
@@ -67,16 +61,12 @@ export function Transport() {
           ))}
         </select>
       </label>
-      <button
-        type="button"
-        class="tool"
-        aria-pressed={muted.value}
-        aria-label={muted.value ? 'Sound on' : 'Mute'}
-        title={muted.value ? 'Sound on' : 'Mute'}
+      <ToolButton
+        icon={muted.value ? 'volumeOff' : 'volume'}
+        label={muted.value ? 'Sound on' : 'Mute'}
+        pressed={muted.value}
         onClick={() => store.toggleMute()}
-      >
-        <Icon name={muted.value ? 'volumeOff' : 'volume'} />
-      </button>
+      />
       <input
         class="volume wide"
         type="range"
@@ -89,50 +79,28 @@ export function Transport() {
         onInput={(event) => store.setVolume(Number(event.currentTarget.value))}
       />
       <span class="spring" />
-      <button
-        type="button"
-        class="tool wide"
-        disabled={off}
-        aria-pressed={curvesShown.value}
-        aria-label="Motion against music"
+      <ToolButton
+        icon="activity"
+        label="Motion against music"
         title={tip('curves', 'Motion against music')}
-        onClick={() => store.toggleCurves()}
-      >
-        <Icon name="activity" />
-      </button>
-      <button
-        type="button"
-        class="tool wide"
+        pressed={curvesShown.value}
         disabled={off}
-        aria-pressed={followPlayhead.value}
-        aria-label="Follow the playhead"
+        class="tool wide"
+        onClick={() => store.toggleCurves()}
+      />
+      <ToolButton
+        icon="locate"
+        label="Follow the playhead"
         title={tip('follow', followPlayhead.value ? 'The timeline follows the playhead' : 'Follow the playhead')}
+        pressed={followPlayhead.value}
+        disabled={off}
+        class="tool wide"
         onClick={() => store.toggleFollow()}
-      >
-        <Icon name="locate" />
-      </button>
+      />
       <div class="zoom-tools wide" role="group" aria-label="Zoom">
-        <button
-          type="button"
-          class="tool"
-          aria-label="Zoom out"
-          title={tip('zoom-out')}
-          onClick={() => store.zoom(1 / 1.5)}
-        >
-          <Icon name="zoomOut" />
-        </button>
-        <button
-          type="button"
-          class="tool"
-          aria-label="Show the whole song"
-          title={tip('fit')}
-          onClick={() => store.fit()}
-        >
-          <Icon name="maximize" />
-        </button>
-        <button type="button" class="tool" aria-label="Zoom in" title={tip('zoom-in')} onClick={() => store.zoom(1.5)}>
-          <Icon name="zoomIn" />
-        </button>
+        <ToolButton icon="zoomOut" label="Zoom out" title={tip('zoom-out')} onClick={() => store.zoom(1 / 1.5)} />
+        <ToolButton icon="maximize" label="Show the whole song" title={tip('fit')} onClick={() => store.fit()} />
+        <ToolButton icon="zoomIn" label="Zoom in" title={tip('zoom-in')} onClick={() => store.zoom(1.5)} />
       </div>
       <GenerateButton />
     </section>

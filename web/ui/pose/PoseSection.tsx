@@ -1,6 +1,7 @@
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
+import { ToolButton } from '../ToolButton';
 
 /** What can be done with the whole pose. */
 export function PoseSection() {
@@ -14,34 +15,31 @@ export function PoseSection() {
           <Icon name="flip" size={18} />
           Mirror
         </button>
-        <button
-          type="button"
-          class="secondary square"
-          aria-label="Copy pose"
+        <ToolButton
+          icon="copy"
+          label="Copy pose"
           title={tip('pose-copy')}
+          size={18}
+          class="secondary square"
           onClick={() => store.copyPose()}
-        >
-          <Icon name="copy" size={18} />
-        </button>
-        <button
-          type="button"
-          class="secondary square"
-          aria-label="Paste"
+        />
+        <ToolButton
+          icon="paste"
+          label="Paste"
           title={tip('pose-paste')}
+          size={18}
           disabled={clip === null}
-          onClick={() => store.pastePose()}
-        >
-          <Icon name="paste" size={18} />
-        </button>
-        <button
-          type="button"
           class="secondary square"
-          aria-label="Reset pose"
+          onClick={() => store.pastePose()}
+        />
+        <ToolButton
+          icon="reset"
+          label="Reset pose"
           title={tip('pose-reset')}
+          size={18}
+          class="secondary square"
           onClick={() => store.resetPose()}
-        >
-          <Icon name="reset" size={18} />
-        </button>
+        />
       </div>
       <div class="tool-row">
         <button

@@ -2,12 +2,12 @@ import { useId } from 'preact/hooks';
 import { barAndBeat, exactBeat, timeOfBeat } from '../../app/snapping';
 import { lastKeyTime } from '../../core/key-ops';
 import type { KeyPose } from '../../core/types';
-import { Icon } from '../Icon';
 import { Slider } from '../inspector/Slider';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 import { AlternateTools } from '../suggest/AlternateTools';
 import { PosePicture } from '../thumbs';
+import { ToolButton } from '../ToolButton';
 
 const strengthText = (value: number) =>
   value >= 0.995
@@ -41,48 +41,36 @@ export function SelectedKeys() {
             <small>{locked ? 'all locked' : 'change together'}</small>
           </div>
         )}
-        <button
-          type="button"
-          class="tool"
-          aria-pressed={locked}
-          aria-label="Lock"
+        <ToolButton
+          icon={locked ? 'lock' : 'lockOpen'}
+          label="Lock"
           title={tip('lock', locked ? 'Unlock' : 'Lock: keep as it is')}
+          pressed={locked}
           onClick={() => store.toggleLock()}
-        >
-          <Icon name={locked ? 'lock' : 'lockOpen'} />
-        </button>
+        />
         {single && (
-          <button
-            type="button"
-            class="tool"
-            aria-label="Edit pose"
+          <ToolButton
+            icon="pencil"
+            label="Edit pose"
             title="Edit pose (double-click it)"
             disabled={first.locked}
             onClick={() => store.editKey(first.id)}
-          >
-            <Icon name="pencil" />
-          </button>
+          />
         )}
-        <button
-          type="button"
-          class="tool"
-          aria-label="Mirror"
+        <ToolButton
+          icon="flip"
+          label="Mirror"
           title={tip('mirror')}
           disabled={locked}
           onClick={() => store.mirrorKeys()}
-        >
-          <Icon name="flip" />
-        </button>
-        <button
-          type="button"
-          class="tool"
-          aria-label="Delete"
+        />
+        <ToolButton
+          icon="trash"
+          label="Delete"
           title={tip('remove')}
           disabled={locked}
           onClick={() => store.deleteKeys()}
-        >
-          <Icon name="trash" />
-        </button>
+        />
       </div>
       <AlternateTools wide />
       {single && <PlaceFields pose={first} />}
