@@ -2,6 +2,7 @@
 import { clockTime, lowerBound } from '../../app/snapping';
 import type { BeatGrid, Features, Waveform } from '../../core/types';
 import { PAGE, pictureX } from './picture-layout';
+import { PALETTE, tint } from '../palette';
 
 /** One dance of the picture. */
 export interface Strip {
@@ -24,16 +25,10 @@ export interface PictureContent {
 }
 
 const COLOURS = {
-  ground: '#0d1015',
-  panel: '#141920',
-  line: '#2a3440',
-  text: '#e9edf3',
-  muted: '#a9b5c4',
-  key: '#ffb454',
-  keySoft: 'rgba(255, 180, 84, 0.13)',
-  music: '#4cc9f0',
-  musicDim: 'rgba(76, 201, 240, 0.32)',
-  motion: '#a78bfa',
+  ...PALETTE,
+  panel: PALETTE.surface,
+  keySoft: tint(PALETTE.key, 0.13),
+  musicDim: tint(PALETTE.music, 0.32),
   left: '#6fa8ff',
   right: '#ff8f6b',
 };

@@ -6,6 +6,7 @@ import type { TimelineView } from '../../app/state';
 import { envelope, movesOnBeats, percentile } from '../../core/report-curves';
 import type { BeatGrid, Features } from '../../core/types';
 import { LANES, timeToX, xToTime } from './geometry';
+import { PALETTE, tint } from '../palette';
 
 /** What is drawn. */
 export interface CurvePicture {
@@ -23,12 +24,12 @@ export interface CurvePicture {
 const COLOURS = {
   lane: '#10151c',
   line: '#222b36',
-  beat: 'rgba(76, 201, 240, 0.28)',
-  downbeat: 'rgba(76, 201, 240, 0.7)',
-  onset: 'rgba(76, 201, 240, 0.2)',
-  onsetLine: 'rgba(76, 201, 240, 0.55)',
-  motion: '#a78bfa',
-  text: '#a9b5c4',
+  beat: tint(PALETTE.music, 0.28),
+  downbeat: tint(PALETTE.music, 0.7),
+  onset: tint(PALETTE.music, 0.2),
+  onsetLine: tint(PALETTE.music, 0.55),
+  motion: PALETTE.motion,
+  text: PALETTE.muted,
 };
 /** Room above the highest speed, for the legend, and below the curves. */
 const HEAD = 22;

@@ -6,6 +6,7 @@ import type { Section } from '../../core/sections';
 import type { BeatGrid, Features, KeyPose, Waveform } from '../../core/types';
 import { buildPyramid, forEachColumn, type Pyramid } from './pyramid';
 import { barStep, LANES, LANES_HEIGHT, timeToX, xToTime } from './geometry';
+import { PALETTE, tint } from '../palette';
 
 /** What is drawn. */
 export interface Picture {
@@ -31,19 +32,19 @@ export interface Picture {
 const COLOURS = {
   lane: '#12171e',
   laneAlt: '#151b23',
-  end: '#0d1015',
+  end: PALETTE.ground,
   line: 'rgba(255,255,255,0.055)',
   bar: 'rgba(255,255,255,0.16)',
   text: '#9aa7b8',
-  music: '#4cc9f0',
-  musicDim: 'rgba(76,201,240,0.45)',
-  beat: 'rgba(76,201,240,0.16)',
-  downbeat: 'rgba(76,201,240,0.38)',
-  loop: 'rgba(76,201,240,0.16)',
-  key: 'rgba(255,180,84,0.7)',
+  music: PALETTE.music,
+  musicDim: tint(PALETTE.music, 0.45),
+  beat: tint(PALETTE.music, 0.16),
+  downbeat: tint(PALETTE.music, 0.38),
+  loop: tint(PALETTE.music, 0.16),
+  key: tint(PALETTE.key, 0.7),
   keyChosen: '#ffd08f',
-  motion: '#a78bfa',
-  motionDim: 'rgba(167,139,250,0.35)',
+  motion: PALETTE.motion,
+  motionDim: tint(PALETTE.motion, 0.35),
 };
 /** Beats closer than this are not drawn, bars are thinned out instead. */
 const MIN_BEAT_PIXELS = 9;
