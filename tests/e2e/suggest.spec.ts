@@ -35,7 +35,10 @@ test('an empty timeline is filled with poses on beats, around an own one; one al
   const own = fourPoses()[0];
   await page.evaluate((rotations) => window.posebeat.setKeyPoses([{ time: 5.1, rotations }]), own);
   await page.getByRole('button', { name: 'What to suggest' }).click();
-  await page.getByRole('radio', { name: 'Every beat' }).check({ force: true });
+  await page
+    .getByRole('radiogroup', { name: 'A pose every' })
+    .getByRole('radio', { name: 'Beat' })
+    .check({ force: true });
   await page
     .getByRole('dialog', { name: 'What to suggest' })
     .getByRole('button', { name: 'Suggest key poses' })

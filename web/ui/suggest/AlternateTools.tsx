@@ -18,7 +18,7 @@ export function AlternateTools({ wide = false }: { wide?: boolean }) {
   const at = alternates.value && store.alternateOf(key);
   return (
     <div
-      class={`alternate-switch ${wide ? 'wide' : ''}`}
+      class={`alternate-switch ${wide ? 'in-card' : ''}`}
       role="group"
       aria-label={wide ? 'Suggested pose: others for it' : 'Other poses for this suggestion'}
     >

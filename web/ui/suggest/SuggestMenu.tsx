@@ -14,8 +14,8 @@ export const SUGGEST_MENU_ID = 'suggest-menu';
 const MARGIN = 8;
 
 const DENSITIES: readonly { value: Density; label: string; title: string }[] = [
-  { value: 'beat', label: 'Every beat', title: 'A pose on every beat' },
-  { value: 'half', label: 'Half a bar', title: 'Two poses in each bar' },
+  { value: 'beat', label: 'Beat', title: 'A pose on every beat' },
+  { value: 'half', label: 'Half bar', title: 'Two poses in each bar' },
   { value: 'bar', label: 'Bar', title: 'A pose at the start of each bar' },
 ];
 
@@ -37,7 +37,7 @@ export function SuggestMenu({ opener }: { opener: RefObject<HTMLButtonElement | 
     { value: 'all', label: 'Everywhere', title: 'All that is danced, around your own poses', off: false },
     {
       value: 'range',
-      label: loop.value ? capital(rangeName(grid.value, loop.value)) : 'Selected range',
+      label: loop.value ? capital(rangeName(grid.value, loop.value)) : 'Range',
       title: loop.value ? 'Only the selected range' : 'Drag over the bar numbers first, to select a range',
       off: loop.value === null,
     },
