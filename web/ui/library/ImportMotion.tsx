@@ -57,7 +57,7 @@ export function ImportMotion() {
       </div>
       <small class="hint">
         {plan
-          ? `${plan.count} key poses from ${clockTime(plan.from)} to ${clockTime(plan.to)}, in place of those there.`
+          ? `${plan.count} key poses from ${playing.value ? 'the playhead on' : `${clockTime(plan.from)} to ${clockTime(plan.to)}`}, in place of those there.`
           : 'Drop a song first: the poses are placed on its beats.'}
       </small>
     </section>
