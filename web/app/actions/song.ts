@@ -1,6 +1,5 @@
 /** From a file to a song that can be danced to. */
 import { createDocument, type ProjectDocument, type SongReference } from '../../core/document';
-import { MAX_SONG_BYTES } from '../../core/formats/project-file';
 import { seedMotion } from '../../core/seed';
 import type { BeatGrid, Features } from '../../core/types';
 import { isAbort, messageOf, type Context } from '../context';
@@ -9,6 +8,7 @@ import { measureSince } from '../marks';
 import type { Song } from '../state';
 import { previewDance } from '../preview';
 import type { DanceActions } from './dance';
+import { fetchSong, SHELF_SIZE, songBytes } from './song-bytes';
 import { offerFormer, offerSong, onSong } from './song-offers';
 
 /** A song and the dance that goes with it, kept for undo across songs. */
@@ -31,22 +31,16 @@ export interface OpenOptions {
   keepHistory?: boolean;
 }
 
-/** Songs kept in memory beside the current one. */
-const SHELF_SIZE = 2;
-
 /** Actions on songs. */
 export function songActions(context: Context, dance: DanceActions) {
   const { state, services, history } = context;
   const { player } = services;
+  const bytesOf = songBytes(context);
   const shelf = new Map<string, Shelf>();
   let job: AbortController | null = null;
   /** A project whose song is not here yet. */
   let waiting: ProjectDocument | null = null;
-  let toldNotKept = false;
   let fetchMissing: (wanted: SongReference) => Promise<boolean> = () => Promise.resolve(false);
-  /** The files of the songs of this visit, for saving a project with its song inside. */
-  const files = new Map<string, Blob>();
-
   const keepOnShelf = () => {
     const song = state.song.value;
     if (!song?.complete) return;
@@ -95,19 +89,6 @@ export function songActions(context: Context, dance: DanceActions) {
     offerSong(context, project, name, () => {
       if (waiting === project) waiting = null;
     });
-
-  const keepSong = (hash: string, file: Blob, name: string) => {
-    const complain = () => {
-      if (toldNotKept) return;
-      toldNotKept = true;
-      context.notify(
-        'info',
-        `“${name}” could not be kept in this browser: after a reload you would have to drop it again. Save the project with the song inside to be safe.`,
-      );
-    };
-    if (file.size > MAX_SONG_BYTES) complain();
-    else services.storage.saveSong(hash, file).catch(complain);
-  };
 
   async function open(file: Blob, options: OpenOptions): Promise<Song> {
     job?.abort(new DOMException('Another song was opened.', 'AbortError'));
@@ -209,10 +190,8 @@ export function songActions(context: Context, dance: DanceActions) {
       begin();
       state.songJob.value = null;
       context.announce(`${options.name}: ${Math.round(analysis.grid.tempo)} beats per minute.`);
-      files.delete(hash);
-      files.set(hash, file);
-      for (const old of [...files.keys()].slice(0, -1 - SHELF_SIZE)) files.delete(old);
-      if (!options.restore) keepSong(hash, file, options.name);
+      bytesOf.remember(hash, file);
+      if (!options.restore) bytesOf.keep(hash, file, options.name);
       return state.song.value!;
     } catch (error) {
       if (job === own) {
@@ -262,19 +241,6 @@ export function songActions(context: Context, dance: DanceActions) {
     });
   }
 
-  async function fetchSong(address: string): Promise<Blob> {
-    let response: Response;
-    try {
-      response = await fetch(address);
-    } catch {
-      throw new Error(
-        `The song at ${address} could not be fetched: the address is wrong, or its server does not allow it.`,
-      );
-    }
-    if (!response.ok) throw new Error(`The song at ${address} could not be fetched (${response.status}).`);
-    return response.blob();
-  }
-
   return {
     /** Opens a song and rejects with a clear message when that fails; what was there before stays. */
     openSong: open,
@@ -315,21 +281,13 @@ export function songActions(context: Context, dance: DanceActions) {
       fetchMissing = fetch;
     },
 
-    /** The bytes of the song at hand as its file had them, or null when they are gone. */
-    async songFile(): Promise<Blob | null> {
-      const reference = state.song.value?.reference;
-      if (!reference) return null;
-      const kept = await services.storage.loadSong(reference.hash).catch(() => null);
-      if (kept) return kept;
-      const file = files.get(reference.hash) ?? null;
-      if (file || !reference.url) return file;
-      return fetchSong(reference.url).catch(() => null);
-    },
-
     /** Opens this project as soon as its song is dropped; null = no longer. */
     awaitSong(document: ProjectDocument | null): void {
       waiting = document;
     },
+
+    /** The bytes of the song at hand as its file had them, or null when they are gone. */
+    songFile: bytesOf.songFile,
 
     showSilent,
 
