@@ -162,6 +162,21 @@ describe('a page that opens with a link', () => {
   });
 });
 
+describe('the model of a link', () => {
+  it('that is another one than here is told of, once the dance is there', async () => {
+    const { store } = page();
+    await store.start(writeLink({ ...linked('demo-hash'), song: demo.song }, 'large (fp16)'));
+    await vi.waitFor(() =>
+      expect(notices(store).join()).toContain('made by another model (large (fp16); here it is light)'),
+    );
+    const same = page().store;
+    await same.start(writeLink({ ...linked('demo-hash'), song: demo.song }, 'light'));
+    await vi.waitFor(() => expect(same.state.dance.value?.kind).toBe('generated'));
+    await settled();
+    expect(notices(same)).toEqual([]);
+  });
+});
+
 describe('a link in a page that is open', () => {
   it('is one step that can be undone, and the work before is put aside', async () => {
     const { store, kept } = page();

@@ -118,7 +118,7 @@ export function shareActions(
       // Without a gesture browsers let a page dance, but not sound.
       if (first) services.player.setMuted(true);
       services.player.play();
-      if (state.stale.value) void dance.generateForPage();
+      if (state.stale.value) void dance.generateForPage().then(() => compareModels(shared.model));
       return true;
     } catch (error) {
       if (!isAbort(error)) context.notify('error', messageOf(error));
@@ -137,6 +137,16 @@ export function shareActions(
       label: 'Undo',
       run: () => void bringBack(owned.document, owned.dance),
     });
+  }
+
+  /** Another model makes another dance of the same poses. */
+  function compareModels(model: string): void {
+    const own = state.dance.value?.result?.model;
+    if (!isGuest.value || !model || !own || own === model) return;
+    context.notify(
+      'info',
+      `This dance was made by another model (${model}; here it is ${own}): it may move differently.`,
+    );
   }
 
   return {

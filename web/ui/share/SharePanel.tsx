@@ -18,6 +18,7 @@ export function Share() {
   const open = shareOpen.value;
   useEffect(() => {
     if (open !== panel.current?.matches(':popover-open')) panel.current?.togglePopover(open);
+    if (open) panel.current?.querySelector('button')?.focus();
   }, [open]);
   return (
     <>
@@ -69,10 +70,8 @@ function Panel() {
   });
   const { link, problem } = made.value;
   const name = song.value?.demo === false ? song.value.reference.name : null;
-  const first = useRef<HTMLDivElement>(null);
-  useEffect(() => first.current?.querySelector('button')?.focus(), []);
   return (
-    <div class="share-body" ref={first}>
+    <div class="share-body">
       <h2 id="share-title">Share this dance</h2>
       {problem ? (
         <>
