@@ -230,8 +230,9 @@ test('by keyboard alone', async ({ page }) => {
     throw new Error(`Tab never reached ${selector}.`);
   };
   await open(page, '?backend=wasm');
+  // Long before the key is pressed: the browser must know that choosers are caught here.
+  const chooser = page.waitForEvent('filechooser', { timeout: 120_000 });
   await tabTo('.drop-target');
-  const chooser = page.waitForEvent('filechooser');
   await press('Enter');
   await (await chooser).setFiles(song());
   await expect(page.locator('.song-title')).toContainText('long road.wav');
