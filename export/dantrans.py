@@ -199,7 +199,8 @@ class Reach(nn.Module):
         inside = (distance >= self.first) & (distance <= self.last)
         values = self.mask[:, (distance - self.first).clamp(0, self.last - self.first)]
         if self.kind == "global":
-            return torch.where(distance > 0, FAR, 0.0) if causal else torch.zeros_like(values)
+            nothing = torch.zeros_like(values)
+            return nothing + torch.where(distance > 0, FAR, 0.0) if causal else nothing
         return torch.where(inside, values, FAR)
 
 

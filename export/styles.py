@@ -30,7 +30,10 @@ def train_classifier(dances: list[Dance], styles: list[int]) -> tuple[nn.Linear,
     features, labels = [], []
     for dance in dances:
         if dance.has_music and dance.style.any() and int(dance.style.argmax()) in styles:
-            rows = row_features(rows_of(dance, 2))
+            rows = rows_of(dance, 2)
+            if not len(rows):
+                continue
+            rows = row_features(rows)
             features.append(rows)
             labels += [styles.index(int(dance.style.argmax()))] * len(rows)
     x, y = torch.cat(features), torch.tensor(labels)
