@@ -99,6 +99,31 @@ describe('the engine', () => {
   });
 });
 
+describe('comparing the engines', () => {
+  it('puts the dance of the other engine beside the one at hand, through the same key poses, and ends cleanly', async () => {
+    const { store } = await withCurves();
+    const { dance, compare, document } = store.state;
+    const curved = dance.value!;
+    await store.compareEngines();
+    await settled();
+    expect(compare.value).toMatchObject({ beside: true, shown: 'b' });
+    expect(compare.value!.dance.curves).toBe(curved.curves);
+    expect(compare.value!.report).not.toBeNull();
+    expect(dance.value!.curves).toBeUndefined();
+    expect(dance.value!.inputs!.keyPoses).toEqual(curved.inputs!.keyPoses);
+    expect(document.value).not.toHaveProperty('engine');
+    store.showCompared('a');
+    expect(compare.value).toMatchObject({ beside: false, shown: 'a' });
+    store.toggleBeside();
+    expect(compare.value).toMatchObject({ beside: true, shown: 'b' });
+    store.keepHeld();
+    await settled();
+    expect(compare.value).toBeNull();
+    expect(document.value.engine).toBe('curves');
+    expect(dance.value!.curves).toBe(curved.curves);
+  });
+});
+
 describe('a change of a curve', () => {
   /** The interval that begins at the first key pose. */
   const first = (store: Awaited<ReturnType<typeof withCurves>>['store']) =>

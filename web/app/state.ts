@@ -83,6 +83,10 @@ export interface Comparison {
   dance: Dance;
   /** Which of the two is on stage. */
   shown: 'a' | 'b';
+  /** B is on stage, and A dances beside it. */
+  beside?: boolean;
+  /** What was measured of A. */
+  report?: DanceReport | null;
 }
 
 /** What the generator is doing. */

@@ -1,6 +1,6 @@
 import { PerspectiveCamera, Vector3 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { framingDistance, Spring } from './framing';
+import { FIGURE_BOX, framingDistance, Spring } from './framing';
 
 /** Height of the point that the camera looks at, metres. */
 const LOOK_HEIGHT = 1.0;
@@ -21,6 +21,8 @@ export class FollowCamera {
   private readonly springs = [new Spring(0, 0.55), new Spring(0, 0.55)];
   private readonly goal = [0, 0];
   private touched = false;
+  /** How far apart two dancers are, metres. */
+  private room = 0;
   private moved = false;
   /** Told when the camera rests where the user turned it to, or is back at the opening view. */
   settled: () => void = () => undefined;
@@ -104,6 +106,12 @@ export class FollowCamera {
     return !this.touched;
   }
 
+  /** Makes room for two dancers this far apart, metres; the opening view goes back for them. */
+  spread(width: number): void {
+    this.room = width;
+    if (!this.touched) this.frame();
+  }
+
   /** Glides (or, with reduced motion, jumps) back to the opening view round the figure. */
   frame(): void {
     this.touched = false;
@@ -177,7 +185,8 @@ export class FollowCamera {
   private home(): { position: Vector3; target: Vector3 } {
     const [x, z] = this.centre;
     const target = new Vector3(x, LOOK_HEIGHT, z);
-    const distance = framingDistance((this.camera.fov * Math.PI) / 180, this.camera.aspect);
+    const box = { ...FIGURE_BOX, width: FIGURE_BOX.width + this.room };
+    const distance = framingDistance((this.camera.fov * Math.PI) / 180, this.camera.aspect, box);
     const flat = Math.cos(VIEW.elevation) * distance;
     const position = target
       .clone()

@@ -13,6 +13,7 @@ import { Lights } from './lights';
 import { Onion, type Ghost } from './onion';
 import { Path } from './path';
 import type { PathPicture } from './path-picture';
+import { APART, aside, Beside } from './beside';
 import { BodyClicks } from './body-clicks';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
@@ -32,6 +33,8 @@ export interface Stage {
   readonly ready: Promise<void>;
   /** Draws a frame of the dance. In pose mode it is kept for later. */
   show(pose: FramePose): void;
+  /** Draws a frame of another dance beside it, to the left; null = the dance is alone. */
+  showBeside(pose: FramePose | null): void;
   /** Calls back before each screen refresh, with performance.now(). */
   beforeFrame(callback: (now: number) => void): () => void;
   setMode(mode: 'dance' | 'pose'): void;
@@ -89,6 +92,7 @@ class WebGLStage implements Stage {
   private readonly lights = new Lights(true);
   private readonly view: FollowCamera;
   private readonly posing: Posing;
+  private readonly beside = new Beside();
   private readonly onion = new Onion();
   private readonly path = new Path();
   private readonly bodyClicks: BodyClicks;
@@ -129,7 +133,14 @@ class WebGLStage implements Stage {
       calm: this.calm,
     });
     this.bodyClicks = new BodyClicks(this.canvas, this.view.camera, () => (this.mode === 'dance' ? this.figure : null));
-    this.scene.add(this.backdrop, this.floor.mesh, this.lights.group, this.onion.group, this.path.group);
+    this.scene.add(
+      this.backdrop,
+      this.floor.mesh,
+      this.lights.group,
+      this.onion.group,
+      this.path.group,
+      this.beside.group,
+    );
     this.canvas.addEventListener('dblclick', () => this.mode === 'dance' && this.frameFigure());
     this.canvas.addEventListener('webglcontextrestored', () => (this.dirty = true));
     this.watch();
@@ -150,6 +161,14 @@ class WebGLStage implements Stage {
   show(pose: FramePose): void {
     this.last.root.set(pose.root);
     this.last.quaternions.set(pose.quaternions);
+    if (this.mode === 'dance') this.draw();
+  }
+
+  showBeside(pose: FramePose | null): void {
+    const alone = this.beside.root === null;
+    if (!pose && alone) return;
+    this.beside.set(this.asset, pose);
+    if (!pose !== alone) this.view.spread(pose ? 2 * APART : 0);
     if (this.mode === 'dance') this.draw();
   }
 
@@ -260,6 +279,7 @@ class WebGLStage implements Stage {
     for (const watcher of this.watchers) watcher.disconnect();
     this.posing.dispose();
     this.onion.dispose();
+    this.beside.dispose();
     this.path.dispose();
     this.bodyClicks.dispose();
     this.view.dispose();
@@ -289,8 +309,10 @@ class WebGLStage implements Stage {
   }
 
   private draw(): void {
-    this.view.aim(this.last.root[0], this.last.root[2]);
-    this.figure?.show(this.last);
+    const [x, , z] = this.last.root;
+    const other = this.beside.root;
+    this.view.aim(other ? (x + other[0]) / 2 : x, other ? (z + other[1]) / 2 : z);
+    this.figure?.show(other ? aside(this.last, APART) : this.last);
     this.dirty = true;
   }
 

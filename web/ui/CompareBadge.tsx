@@ -28,6 +28,15 @@ export function CompareBadge() {
           </label>
         ))}
       </div>
+      <button
+        type="button"
+        class="quiet"
+        aria-pressed={held.beside === true}
+        title="A on the left, B on the right, at the same time"
+        onClick={() => store.toggleBeside()}
+      >
+        Side by side
+      </button>
       {shown === 'a' ? (
         <button
           type="button"

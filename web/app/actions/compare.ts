@@ -11,7 +11,9 @@ export function compareActions(context: Context, dances: DanceActions) {
 
   const show = (shown: 'a' | 'b') => {
     const held = state.compare.value;
-    if (held && held.shown !== shown) state.compare.value = { ...held, shown };
+    // Whoever wants to see A wants to see it alone.
+    const beside = shown === 'b' && held?.beside;
+    if (held && held.shown !== shown) state.compare.value = { ...held, shown, beside };
   };
 
   // Whoever works on wants to see what it does: that is B. Another song ends the comparison.
@@ -43,11 +45,30 @@ export function compareActions(context: Context, dances: DanceActions) {
         context.notify('info', 'There is no dance to compare yet: generate one first.');
         return;
       }
-      state.compare.value = { document: state.document.value, dance, shown: 'b' };
+      state.compare.value = { document: state.document.value, dance, shown: 'b', report: state.report.value };
       context.announce('This dance is held as A. Change what you like, then press A to compare.');
     },
 
     showCompared: show,
+
+    /** A dances beside B, or B is alone. */
+    toggleBeside(): void {
+      const held = state.compare.value;
+      if (held) state.compare.value = { ...held, shown: 'b', beside: !held.beside };
+    },
+
+    /** The same key poses through the other engine, both dances side by side, with both reports. */
+    async compareEngines(): Promise<void> {
+      const dance = state.dance.value;
+      if (dance?.kind !== 'generated' || state.stale.value) {
+        context.notify('info', 'There is no dance of these key poses yet: generate it first.');
+        return;
+      }
+      const { document, report } = state;
+      state.compare.value = { document: document.value, dance, shown: 'b', beside: true, report: report.value };
+      dances.setEngine(document.value.engine === 'curves' ? 'light' : 'curves');
+      if (await dances.catchUp()) context.announce('Both dances are on stage: A on the left, B on the right.');
+    },
 
     /** Holds the dance of now as A in place of the one before. */
     holdAgain(): void {

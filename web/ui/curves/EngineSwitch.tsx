@@ -48,6 +48,11 @@ export function EngineSwitch() {
           {store.state.curvesOpen.value ? 'Hide the curves' : 'Edit the curves'}
         </button>
       )}
+      {dance.value?.kind === 'generated' && !store.state.stale.value && !store.state.compare.value && (
+        <button type="button" class="quiet" onClick={() => void store.compareEngines()}>
+          Compare both engines side by side
+        </button>
+      )}
     </fieldset>
   );
 }

@@ -3,6 +3,7 @@ import { REAL_DANCE } from '../../app/report-reference';
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
+import { CompareTable } from './CompareTable';
 import { Gauge } from './Gauge';
 import { HitCurve } from './HitCurve';
 import { KeyErrors } from './KeyErrors';
@@ -48,6 +49,7 @@ export function ReportPanel() {
           <span>Poses or settings changed since: this is the dance you see.</span>
         </p>
       ) : null}
+      <CompareTable />
       <Card title="Your key poses" tone="key" verdict={keys}>
         {keys ? <KeyErrors errors={now.consistencyPerKey} /> : <p class="hint">This dance has no key poses.</p>}
       </Card>

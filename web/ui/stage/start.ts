@@ -20,12 +20,20 @@ export async function startStage(
   let lastBeat = -1;
   let shownTime = -1;
   let shownMotion: Motion | null = null;
+  const besidePose: MutableFramePose = { root: new Float32Array(3), quaternions: new Float32Array(96) };
+  let shownBeside: Motion | null = null;
 
   const onFrame = () => {
     const time = store.tick();
     store.followTime(time);
     const motion = motionAt(state, time);
+    const held = state.compare.value;
+    const beside = held?.beside && !state.draft.value ? held.dance.motion : null;
     // A dance that stands still is not drawn again: the graphics card may rest.
+    if (stage && (beside !== shownBeside || (beside && time !== shownTime))) {
+      stage.showBeside(beside && framePose(beside, time, besidePose));
+      shownBeside = beside;
+    }
     if (stage && motion && (motion !== shownMotion || time !== shownTime)) {
       stage.show(framePose(motion, time, pose));
       shownMotion = motion;
