@@ -14,6 +14,10 @@ const smoothstep = (low: number, high: number, x: number) => {
 };
 type Colour = readonly [number, number, number];
 const rgb = ({ r, g, b }: { r: number; g: number; b: number }): Colour => [r, g, b];
+const BODY = rgb(PALETTE.body);
+const LEFT = rgb(PALETTE.left);
+const RIGHT = rgb(PALETTE.right);
+const VISOR = rgb(PALETTE.visor);
 const mix = (a: Colour, b: Colour, t: number): Colour => [
   a[0] + (b[0] - a[0]) * t,
   a[1] + (b[1] - a[1]) * t,
@@ -29,16 +33,15 @@ const SOCK = at('left_ankle', 1) + 0.06;
  * between two vertices here.
  */
 export function paintAt(x: number, y: number, z: number, part: PartName): Colour {
-  const body = rgb(PALETTE.body);
-  const side = rgb(x > 0 ? PALETTE.left : PALETTE.right);
-  if (part === 'visor') return rgb(PALETTE.visor);
+  const side = x > 0 ? LEFT : RIGHT;
+  if (part === 'visor') return VISOR;
   const reach = Math.abs(x);
   if (part === 'head' && reach > 0.0725) return side;
   const limb = Math.max(smoothstep(ARM[0], ARM[1], reach), reach > 0.4 ? 0 : 1 - smoothstep(LEG[0], LEG[1], y));
   const cuff = reach > 0.4 ? reach - CUFF : SOCK + 0.25 * (z + 0.04) - y;
   const covered = part !== 'head' && cuff > 0;
-  if (part === 'shoe' && y < 0.017) return body;
-  return covered ? mix([0, 0, 0], side, 0.88) : mix(body, side, 0.8 * limb);
+  if (part === 'shoe' && y < 0.017) return BODY;
+  return covered ? mix([0, 0, 0], side, 0.88) : mix(BODY, side, 0.8 * limb);
 }
 
 /** Parts that share a material, and how rough it is. */
@@ -52,33 +55,41 @@ const MATERIALS: readonly { name: string; parts: readonly PartName[]; roughness:
 export function figureForGlb({ geometry, levels }: FigureAsset): GlbFigure {
   const [{ start, count }] = levels;
   const index = geometry.index!.array.subarray(start, start + count) as Uint16Array;
-  const n = index.reduce((most, vertex) => Math.max(most, vertex), 0) + 1;
+  // Plain loops over the 25,000 vertices: this runs on the main thread.
+  let n = 0;
+  for (let i = 0; i < count; i++) if (index[i] >= n) n = index[i] + 1;
   const values = (name: string, width: number) => geometry.getAttribute(name).array.slice(0, n * width);
   const positions = values('position', 3) as Float32Array;
   const surface = values('surface', 2) as Float32Array;
   const weights = values('skinWeight', 4) as Float32Array;
   const skin = values('skinIndex', 4) as Uint8Array;
   const colours = new Uint8Array(n * 4);
-  const partOf = (vertex: number) => PARTS[Math.round(surface[vertex * 2 + 1])];
+  const bones = new Uint8Array(n * 4);
+  const materialOf = PARTS.map((part) => MATERIALS.findIndex(({ parts }) => parts.includes(part)));
+  const material = new Uint8Array(n);
   for (let v = 0; v < n; v++) {
-    const [x, y, z] = positions.subarray(v * 3, v * 3 + 3);
-    paintAt(x, y, z, partOf(v)).forEach((value, k) => (colours[v * 4 + k] = Math.round(value * 255)));
+    const part = Math.round(surface[v * 2 + 1]);
+    material[v] = materialOf[part];
+    const colour = paintAt(positions[v * 3], positions[v * 3 + 1], positions[v * 3 + 2], PARTS[part]);
+    for (let k = 0; k < 3; k++) colours[v * 4 + k] = Math.round(colour[k] * 255);
     colours[v * 4 + 3] = 255;
+    for (let k = v * 4; k < v * 4 + 4; k++) bones[k] = weights[k] > 0 ? FILE_BONES[skin[k]] : 0;
   }
-  const corners = MATERIALS.map((): number[] => []);
+  const corners = MATERIALS.map(() => new Uint16Array(count));
+  const lengths = MATERIALS.map(() => 0);
   for (let i = 0; i < count; i += 3) {
-    const material = MATERIALS.findIndex(({ parts }) => parts.includes(partOf(index[i])));
-    corners[material].push(index[i], index[i + 1], index[i + 2]);
+    const m = material[index[i]];
+    for (let k = i; k < i + 3; k++) corners[m][lengths[m]++] = index[k];
   }
   return {
     positions,
     normals: values('normal', 3) as Float32Array,
     colours,
-    bones: skin.map((bone, i) => (weights[i] > 0 ? FILE_BONES[bone] : 0)),
+    bones,
     weights,
     helpers: SKIN_HELPERS,
     parts: MATERIALS.map(({ name, roughness }, i): GlbPart => {
-      return { name, roughness, triangles: Uint16Array.from(corners[i]) };
+      return { name, roughness, triangles: corners[i].slice(0, lengths[i]) };
     }),
   };
 }
