@@ -103,7 +103,7 @@ async function checkProject(page: Page): Promise<void> {
 
 test('by mouse', async ({ page }) => {
   const errors = collectErrors(page);
-  await open(page, '?backend=wasm');
+  await open(page, '?backend=wasm', { smooth: true });
   const skip = page.getByRole('button', { name: 'Skip' });
   if (await skip.isVisible()) await skip.click();
   await picture(page, '1-open');

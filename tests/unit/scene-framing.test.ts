@@ -1,7 +1,6 @@
 import { PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { FIGURE_BOX, framingDistance, QualityGovernor, Spring } from '../../web/scene/framing';
-import { isSoftware } from '../../web/scene/software';
 
 describe('framing', () => {
   it('holds the whole box in view, on wide screens and on phones, and no further away than needed', () => {
@@ -76,19 +75,5 @@ describe('quality', () => {
   it('ignores the gap after the page was in the background, and one hiccup', () => {
     const governor = new QualityGovernor(1);
     for (let i = 0; i < 500; i++) expect(governor.sample(i % 50 === 7 ? 5000 : i % 50 === 9 ? 300 : 16)).toBe(false);
-  });
-});
-
-describe('software rendering', () => {
-  it.each([
-    ['ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device (Subzero) (0x0000C0DE)), SwiftShader driver)', true],
-    ['llvmpipe (LLVM 15.0.6, 256 bits)', true],
-    ['ANGLE (Microsoft, Microsoft Basic Render Driver Direct3D11 vs_5_0 ps_5_0)', true],
-    ['Apple Software Renderer', true],
-    ['ANGLE (NVIDIA, NVIDIA GeForce RTX 3060 Direct3D11 vs_5_0 ps_5_0, D3D11)', false],
-    ['Apple M2', false],
-    ['Mali-G78', false],
-  ])('is known by its name: %s', (name, software) => {
-    expect(isSoftware(name)).toBe(software);
   });
 });

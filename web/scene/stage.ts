@@ -18,7 +18,6 @@ import { BodyClicks } from './body-clicks';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
 import { REST_HEIGHT } from './rest';
-import { drawsInSoftware } from './software';
 
 export type { JointHover } from './posing';
 export type { PoseListener, PosePhase } from './pose-edit';
@@ -382,8 +381,7 @@ class WebGLStage implements Stage {
 function createRenderer(): WebGLRenderer {
   let renderer: WebGLRenderer;
   try {
-    // Smooth edges are half the price of a frame that the processor draws.
-    renderer = new WebGLRenderer({ antialias: !drawsInSoftware(), powerPreference: 'high-performance' });
+    renderer = new WebGLRenderer({ antialias: true, powerPreference: 'high-performance' });
   } catch {
     throw new Error(
       'This browser cannot show 3D (WebGL 2 is off). Turn on hardware acceleration or try another browser.',
