@@ -217,7 +217,11 @@ def markdown(result: dict, fit: dict | None, ablations: dict | None) -> str:
     )
     if "limits" in result:
         lines = [[kind, f"{v['share_of_poses_beyond_5_deg']:.1%}", f"{v['share_of_joints']:.2%}", str(v["worst_deg"])] for kind, v in result["limits"].items()]
-        parts.append("Joint limits by the page's table (web/core/joint-limits-table.ts):\n\n" + table_of(["poses", "with a joint more than 5 degrees beyond", "joints", "worst, degrees"], lines))
+        parts.append(
+            "Joint limits by the page's table (web/core/joint-limits-table.ts), of the network's own output:\n\n"
+            + table_of(["poses", "with a joint more than 5 degrees beyond", "joints", "worst, degrees"], lines)
+            + "\n\nRecorded dance leaves those ranges too; the page brings every suggested pose inside them (web/core/suggest-pose.ts)."
+        )
     parts.append(
         f"Velocity jump at keys, share of the velocity there: {result['velocity_jump_at_keys']}. "
         f"Path over the floor that stage 2 finds by itself: {result['path_error_cm_per_interval']} cm off an interval."
