@@ -12,7 +12,7 @@ import { finishDance, type UncorrectedDance } from '../../web/core/finish';
 import { jerkPerFrame, jointPositions } from '../../web/core/metrics';
 import { motionToAxisAngle, sliceMotion } from '../../web/core/motion';
 import type { Motion } from '../../web/core/types';
-import { generateMotion } from '../../web/core/windows';
+import { generateMotion, type RunWindow } from '../../web/core/windows';
 import { poseWith, slerpNetwork, stepClip } from './dance';
 import type { DanceRequest, Services } from './support/app';
 import { fakeServices, settled } from './support/app';
@@ -31,15 +31,22 @@ const realReporter = (): Reporter => ({
   plot: () => Promise.resolve(),
 });
 
+/** Interpolation that passes a fifth of the way beside the key poses, towards the T-pose, as a real network passes beside them. */
+const besideKeys: RunWindow = (inputs) => {
+  const upright = [1, 0, 0, 0, 1, 0];
+  const keyPoses = inputs.keyPoses.map((value, i) => 0.8 * value + 0.2 * upright[i % 6]);
+  return slerpNetwork({ ...inputs, keyPoses });
+};
+
 /** A page with a song of ten seconds (bars of two), two key poses and a network of plain interpolation. */
-async function page(change: (services: Services) => void = () => undefined) {
+async function page(change: (services: Services) => void = () => undefined, network: RunWindow = slerpNetwork) {
   const services = fakeServices(new Player(() => ({}) as AudioContext));
   const requests: DanceRequest[] = [];
   services.assets.seeds = async () => [stepClip()];
   services.engine.generate = async (request, onPartial, signal) => {
     requests.push(request);
     let uncorrected: UncorrectedDance | undefined;
-    const motion = await generateMotion(request, slerpNetwork, {
+    const motion = await generateMotion(request, network, {
       signal,
       onUncorrected: (made) => (uncorrected = structuredClone(made)),
       onPartial,
@@ -121,7 +128,7 @@ describe('a range made anew', () => {
   });
 
   it('gets another take each time, and takes made before come back without the network', async () => {
-    const { store, asked } = await page();
+    const { store, asked } = await page(undefined, besideKeys);
     await start(store);
     const none = danceOf(store);
     await store.regenerateRange({ start: 4, end: 8 });
@@ -260,7 +267,7 @@ describe('the dance of a document', () => {
   });
 
   it('follows the strength of a key pose at once, and undo of it, without the network', async () => {
-    const { store, asked } = await page();
+    const { store, asked } = await page(undefined, besideKeys);
     await start(store);
     await store.regenerateRange({ start: 4, end: 8 });
     const firm = danceOf(store);
