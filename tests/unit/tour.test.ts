@@ -27,6 +27,12 @@ describe('the card of a step', () => {
     expect(free(place, anchor)).toBe(true);
   });
 
+  it('goes above a block that wants it so, where there is room', () => {
+    const [low, high] = [box(30, 320, 340, 220), box(30, 120, 340, 220)];
+    expect(placeCard(card, low, stage, [], true)).toEqual({ left: 30, top: 188, side: 'bottom', along: 170 });
+    expect(placeCard(card, high, stage, [], true).side).toBe('left');
+  });
+
   it('leaves the controls of the stage free', () => {
     const tools = box(900, 490, 210, 44);
     const chip = box(940, 64, 160, 44);

@@ -14,6 +14,8 @@ interface Step {
   text: string;
   /** What it is about: the first of these that can be seen. */
   anchors: readonly string[];
+  /** The card goes above this block, where there is room, and not beside the anchor. */
+  above?: string;
 }
 
 const STEPS: readonly Step[] = [
@@ -21,6 +23,7 @@ const STEPS: readonly Step[] = [
     title: 'Start with your song',
     text: 'Drop a file anywhere, or choose one. Its beats are found at once.',
     anchors: ['.drop-target', '.new-song'],
+    above: '.welcome',
   },
   {
     title: 'Place a few poses',
@@ -65,7 +68,7 @@ function Card({ index }: { index: number }) {
   const store = useStore();
   const card = useRef<HTMLElement>(null);
   const place = useSignal<(Place & { anchor: DOMRect }) | null>(null);
-  const { title, text, anchors } = STEPS[index];
+  const { title, text, anchors, above } = STEPS[index];
   // What moves the anchors about: another panel, the welcome gone, a chip come.
   const { panel, song, songJob, sheetOpen, generation, curvesShown } = store.state;
   const layout = [panel, song, songJob, sheetOpen, curvesShown].map((each) => each.value);
@@ -79,7 +82,8 @@ function Card({ index }: { index: number }) {
       return;
     }
     const avoid = [...document.querySelectorAll(KEEP_FREE)].map((element) => element.getBoundingClientRect());
-    const next = { ...placeCard(own, anchor, stage, avoid), anchor };
+    const block = above ? seen(above) : null;
+    const next = { ...placeCard(own, block ?? anchor, stage, avoid, block !== null), anchor };
     if (JSON.stringify(next) !== JSON.stringify(place.peek())) place.value = next;
   };
   useLayoutEffect(update, [index, generation.value.status, ...layout]);

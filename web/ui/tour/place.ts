@@ -30,8 +30,9 @@ const clamp = (value: number, low: number, high: number) => Math.min(Math.max(va
  * @param anchor - What it is about.
  * @param stage - Where it may be.
  * @param avoid - Controls on the stage that stay free.
+ * @param above - Above the anchor where there is room, so that what dances beside it stays in sight.
  */
-export function placeCard(card: Box, anchor: Box, stage: Box, avoid: readonly Box[]): Place {
+export function placeCard(card: Box, anchor: Box, stage: Box, avoid: readonly Box[], above = false): Place {
   const middle = { x: anchor.left + anchor.width / 2, y: anchor.top + anchor.height / 2 };
   const right = stage.left + stage.width - GAP - card.width;
   const bottom = stage.top + stage.height - GAP - card.height;
@@ -47,6 +48,10 @@ export function placeCard(card: Box, anchor: Box, stage: Box, avoid: readonly Bo
   } else if (anchor.top + anchor.height <= stage.top + 1) {
     side = 'top';
     top = stage.top + GAP;
+  } else if (above && anchor.top - GAP - card.height >= stage.top + GAP) {
+    side = 'bottom';
+    left = clamp(anchor.left, stage.left + GAP, right);
+    top = anchor.top - GAP - card.height;
   } else if (anchor.left + anchor.width + GAP <= right) {
     side = 'left';
     left = anchor.left + anchor.width + GAP;
