@@ -99,9 +99,12 @@ test('the demo’s own song can be loaded while the demo’s sound is still on i
   expect(duration).toBeGreaterThan(55);
 });
 
-test('what is not there yet says so', async ({ page }) => {
+test('an engine or a format that does not exist is refused by name, and the document stays', async ({ page }) => {
   await open(page);
-  expect(await rejection(page.evaluate(() => window.posebeat.generate({ engine: 'curves' })))).toMatch(
-    /not available yet/i,
+  const before = await page.evaluate(() => JSON.stringify(window.posebeat.document()));
+  expect(await rejection(page.evaluate(() => window.posebeat.generate({ engine: 'magic' as never })))).toMatch(
+    /no engine "magic": use "light" or "curves"/,
   );
+  expect(await rejection(page.evaluate(() => window.posebeat.exportAs('obj' as never)))).toMatch(/"obj"/);
+  expect(await page.evaluate(() => JSON.stringify(window.posebeat.document()))).toBe(before);
 });

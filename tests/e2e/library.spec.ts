@@ -51,7 +51,7 @@ test('an own pose is saved, survives a reload, is exported, deleted, brought bac
   await expect(own(page).locator('.pose-tile')).toHaveText(['Arabesque']);
 
   const download = page.waitForEvent('download');
-  await page.getByRole('button', { name: 'Export' }).click();
+  await page.getByRole('button', { name: 'Export', exact: true }).click();
   const file = await (await download).path();
 
   await own(page).locator('.pose-tile').focus();

@@ -4,6 +4,12 @@ import { wav } from './support/songs';
 
 const keys = (page: Page) =>
   page.evaluate(() => window.posebeat.document().keyPoses.map(({ time, name }) => ({ time, name })));
+/** The timeline's scale, from where its last key pose is drawn. */
+const pixelsPerSecond = (page: Page) =>
+  page
+    .locator('.key-item')
+    .last()
+    .evaluate((item: HTMLElement) => parseFloat(item.style.left) / Number(item.dataset.time));
 const beats = async (page: Page) => (await loadSong(page, wav({ seconds: 12 }))).beats;
 
 /** Drags with real mouse events from the middle of one box to a point. */
@@ -231,8 +237,7 @@ test('key poses by keyboard alone: walk, select, copy, lock, strength, distribut
   await page.keyboard.press('Control+z');
 
   // Zoom: far in, to the selection, the whole song.
-  const scale = () =>
-    page.locator('.key-rail').evaluate((rail) => Number((rail as HTMLElement).style.getPropertyValue('--scale')));
+  const scale = () => pixelsPerSecond(page);
   await key(page, 1).focus();
   await page.keyboard.press('Shift+ArrowDown');
   await page.keyboard.press('0');
@@ -270,8 +275,7 @@ test.describe('by touch', () => {
     expect(await chosen(page)).toEqual(['k1', 'k2']);
 
     const lane = (await page.locator('.timeline-surface').boundingBox())!;
-    const scale = () =>
-      page.locator('.key-rail').evaluate((rail) => Number((rail as HTMLElement).style.getPropertyValue('--scale')));
+    const scale = () => pixelsPerSecond(page);
     const before = await scale();
     const y = lane.y + 60;
     await touch('touchStart', [{ x: 150, y }]);
