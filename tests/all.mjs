@@ -52,8 +52,8 @@ const steps = {
     await run('npx', ['playwright', 'test'], options);
   },
 };
-/** What runs side by side: one core each. The rest uses all cores by itself. */
-const GROUPS = [['typecheck', 'lint', 'pytest'], ['unit'], ['build'], ['e2e']];
+/** Stages, one after another; the lanes of a stage run side by side, the steps of a lane one after another. */
+const STAGES = [[['typecheck', 'lint', 'unit'], ['pytest']], [['build', 'e2e']]];
 
 const only = process.argv.includes('--only')
   ? process.argv[process.argv.indexOf('--only') + 1].split(',')
@@ -74,11 +74,15 @@ async function step(name, options) {
 }
 
 const begun = Date.now();
-for (const group of GROUPS) {
-  const wanted = group.filter((name) => only.includes(name));
-  if (wanted.length === 0) continue;
-  console.log(`\n=== ${wanted.join(', ')}`);
-  await Promise.all(wanted.map((name) => step(name, { quiet: wanted.length > 1 })));
+for (const stage of STAGES) {
+  const lanes = stage.map((lane) => lane.filter((name) => only.includes(name))).filter((lane) => lane.length > 0);
+  if (lanes.length === 0) continue;
+  console.log(`\n=== ${lanes.map((lane) => lane.join(', ')).join('; beside it ')}`);
+  await Promise.all(
+    lanes.map(async (lane) => {
+      for (const name of lane) await step(name, { quiet: lanes.length > 1 });
+    }),
+  );
 }
 
 console.log('\n=== summary');

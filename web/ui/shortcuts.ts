@@ -476,8 +476,10 @@ export function tip(id: string, text?: string): string {
 export function bindShortcuts(store: Store, target: Window, table = SHORTCUTS): () => void {
   const listener = (event: KeyboardEvent) => {
     if (event.defaultPrevented) return;
-    // Esc is for the innermost: the browser closes an open menu or dialog by itself, wherever the focus is.
-    if (event.key === 'Escape' && target.document.querySelector(':popover-open, dialog:modal')) return;
+    // Esc is for the innermost: the browser closes an open menu or dialog by itself, wherever the focus is. Not the help, whose search
+    // field would take the key to empty itself.
+    const helping = store.state.help.value;
+    if (event.key === 'Escape' && !helping && target.document.querySelector(':popover-open, dialog:modal')) return;
     const element = event.target as HTMLElement;
     const typing = element.matches?.('input:not([type=range]):not([type=radio]), textarea, select, [contenteditable]');
     // Space and Enter belong to a focused control; arrows are never in the table.

@@ -55,7 +55,11 @@ export const misplaced = (page: Page, touch: boolean): Promise<string[]> =>
       '.welcome h1', '.welcome p', '.drop-target', '.stage-tools', '.sound-chip', '.work-chip', '.pose-bar', '.tool-strip', '.compare-badge', '.tour',
     ]); // prettier-ignore
     const panel = document.querySelector('#inspector-panel')!;
-    if (panel.scrollWidth > panel.clientWidth) faults.push('the panel is wider than its place');
+    if (panel.scrollWidth > panel.clientWidth) {
+      const edge = panel.getBoundingClientRect().left + panel.clientWidth;
+      const wide = [...panel.querySelectorAll('*')].filter((each) => each.getBoundingClientRect().right > edge + 0.5);
+      faults.push(`the panel is wider than its place, for ${wide.slice(0, 3).map(describe).join(', ')}`);
+    }
     const stage = document.querySelector('.stage')!.getBoundingClientRect();
     if (stage.height < 150) faults.push(`the stage is only ${Math.round(stage.height)} px high`);
 
