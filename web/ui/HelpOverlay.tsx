@@ -1,5 +1,5 @@
 import { useComputed, useSignal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { Dialog } from './Dialog';
 import { Icon } from './Icon';
 import { keyText, SHORTCUTS } from './shortcuts';
 import { useStore } from './store-context';
@@ -7,32 +7,19 @@ import { useStore } from './store-context';
 /** All keys, from the same table that binds them. */
 export function HelpOverlay() {
   const store = useStore();
-  const open = store.state.help.value;
-  const dialog = useRef<HTMLDialogElement>(null);
-  useEffect(() => {
-    if (open) dialog.current?.showModal();
-    else dialog.current?.close();
-  }, [open]);
   const leaveTo = (run: () => void) => () => {
     store.toggleHelp(false);
     run();
   };
   return (
-    <dialog
-      class="help"
-      ref={dialog}
-      aria-labelledby="help-title"
+    <Dialog
+      open={store.state.help.value}
       onClose={() => store.toggleHelp(false)}
-      onClick={(event) => event.target === dialog.current && store.toggleHelp(false)}
+      title="How it works"
+      titleId="help-title"
     >
-      {open && (
-        <div class="help-body">
-          <div class="help-head">
-            <h2 id="help-title">How it works</h2>
-            <button type="button" class="tool" aria-label="Close" onClick={() => store.toggleHelp(false)}>
-              <Icon name="close" />
-            </button>
-          </div>
+      {() => (
+        <>
           <ol class="help-steps">
             <li>Drop a song anywhere on the page. Its beats appear on the timeline.</li>
             <li>Drag poses from the list onto the timeline. They snap to beats; hold Alt to place them freely.</li>
@@ -48,9 +35,9 @@ export function HelpOverlay() {
             </button>
           </div>
           <Keys />
-        </div>
+        </>
       )}
-    </dialog>
+    </Dialog>
   );
 }
 

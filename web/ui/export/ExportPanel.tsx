@@ -1,16 +1,15 @@
 import { signal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
 import type { MotionFileOptions } from '../../app/actions/export';
 import { estimateBytes, FRAME_RATES, type MotionFormat } from '../../app/motion-formats';
 import { clockTime } from '../../app/snapping';
 import spec from '../../core/spec.json';
+import { Dialog } from '../Dialog';
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 import { FORMAT_CARDS, sizeText, type FormatCard } from './formats';
+import { PARTS, partsNow, type Part } from './parts';
 import { Segments } from './Segments';
-
-type Part = 'all' | 'trim' | 'loop';
 
 /** What was chosen last; it stays while the page is open. */
 const choice = {
@@ -41,34 +40,18 @@ export function ExportButton() {
 /** The dance as a file for other programs. */
 export function ExportPanel() {
   const store = useStore();
-  const open = store.state.exportOpen.value;
-  const dialog = useRef<HTMLDialogElement>(null);
-  useEffect(() => {
-    if (open) dialog.current?.showModal();
-    else dialog.current?.close();
-  }, [open]);
   return (
-    <dialog
-      class="help export-panel"
-      ref={dialog}
-      aria-labelledby="export-title"
+    <Dialog
+      open={store.state.exportOpen.value}
       onClose={() => store.toggleExport(false)}
-      onClick={(event) => event.target === dialog.current && store.toggleExport(false)}
-      // The page's keys rest while the panel is open.
-      onKeyDown={(event) => event.stopPropagation()}
+      title="Export the dance"
+      titleId="export-title"
+      kind="export-panel"
+      bodyClass="export-body"
+      keepsKeys
     >
-      {open && (
-        <div class="export-body">
-          <div class="help-head">
-            <h2 id="export-title">Export the dance</h2>
-            <button type="button" class="tool" aria-label="Close" onClick={() => store.toggleExport(false)}>
-              <Icon name="close" />
-            </button>
-          </div>
-          <Contents />
-        </div>
-      )}
-    </dialog>
+      {() => <Contents />}
+    </Dialog>
   );
 }
 
@@ -80,9 +63,7 @@ function Contents() {
   void [document.value.trim, loop.value];
   if (!dance || dance.kind === 'preview') return <NoDance />;
   const card = FORMAT_CARDS.find(({ format }) => format === choice.format.value)!;
-  const parts = (['all', 'trim', 'loop'] as const).filter((part) => store.exportFrames(part) !== null);
-  const wished = choice.part.value;
-  const part = wished && parts.includes(wished) ? wished : parts.includes('trim') ? 'trim' : 'all';
+  const { parts, part } = partsNow(choice.part.value, (each) => store.exportFrames(each) !== null);
   const frames = store.exportFrames(part) ?? 0;
   const last = Math.max(0, frames - 1) / dance.motion.fps;
   const fps = choice.fps.value;
@@ -148,7 +129,6 @@ function FormatChoice({ card }: { card: FormatCard }) {
 }
 
 function Options({ card, parts, part }: { card: FormatCard; parts: readonly Part[]; part: Part }) {
-  const PARTS: Readonly<Record<Part, string>> = { all: 'Whole dance', trim: 'Trimmed part', loop: 'Selected stretch' };
   return (
     <div class="export-options">
       {card.choices.includes('figure') && (

@@ -1,5 +1,5 @@
 import { signal, useSignal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
+import { useEffect } from 'preact/hooks';
 import { clockTime } from '../../app/snapping';
 import {
   videoBytes,
@@ -12,13 +12,13 @@ import {
 } from '../../video/options';
 import type { VideoSupport } from '../../video/protocol';
 import { chooseFormat, contentsText, FORMAT_NAMES, NO_VIDEO, supportText } from '../../video/support-words';
+import { Dialog } from '../Dialog';
 import { sizeText } from '../export/formats';
+import { PARTS, partsNow, type Part } from '../export/parts';
 import { Segments } from '../export/Segments';
 import { Icon } from '../Icon';
 import { useStore } from '../store-context';
 import { takeFocus, VideoProgress } from './VideoProgress';
-
-type Part = 'all' | 'trim' | 'loop';
 
 /** What was chosen last; it stays while the page is open. */
 const choice = {
@@ -55,40 +55,23 @@ const SIZE_LABELS: Readonly<Record<number, string>> = {
   2160: '2160p (4K)',
 };
 
-const PARTS: Readonly<Record<Part, string>> = { all: 'Whole dance', trim: 'Trimmed part', loop: 'Selected stretch' };
-
 /** The dance as a video with the song. */
 export function VideoPanel() {
   const store = useStore();
   const open = store.state.videoOpen.value;
-  const dialog = useRef<HTMLDialogElement>(null);
-  useEffect(() => {
-    if (open) dialog.current?.showModal();
-    else dialog.current?.close();
-  }, [open]);
   return (
     <>
-      <dialog
-        class="help export-panel video-panel"
-        ref={dialog}
-        aria-labelledby="video-title"
+      <Dialog
+        open={open}
         onClose={() => store.toggleVideo(false)}
-        onClick={(event) => event.target === dialog.current && store.toggleVideo(false)}
-        // The page's keys rest while the panel is open.
-        onKeyDown={(event) => event.stopPropagation()}
+        title="Save as a video"
+        titleId="video-title"
+        kind="export-panel video-panel"
+        bodyClass="export-body"
+        keepsKeys
       >
-        {open && (
-          <div class="export-body">
-            <div class="help-head">
-              <h2 id="video-title">Save as a video</h2>
-              <button type="button" class="tool" aria-label="Close" onClick={() => store.toggleVideo(false)}>
-                <Icon name="close" />
-              </button>
-            </div>
-            <Contents />
-          </div>
-        )}
-      </dialog>
+        {() => <Contents />}
+      </Dialog>
       {!open && <VideoProgress chip />}
     </>
   );
@@ -100,9 +83,7 @@ function Contents() {
   // Read here, so that the panel follows them.
   void [document.value.trim, loop.value, duration.value];
   const sound = choice.sound.value && song.value !== null;
-  const parts = (['all', 'trim', 'loop'] as const).filter((range) => store.videoPlan({ range }) !== null);
-  const wished = choice.part.value;
-  const part = wished && parts.includes(wished) ? wished : parts.includes('trim') ? 'trim' : 'all';
+  const { parts, part } = partsNow(choice.part.value, (range) => store.videoPlan({ range }) !== null);
   const options: VideoOptions = {
     aspect: choice.aspect.value,
     size: choice.size.value,
