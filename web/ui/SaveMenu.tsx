@@ -1,6 +1,7 @@
 import { useRef } from 'preact/hooks';
 import { chooseProject } from './files';
 import { Icon, type IconName } from './Icon';
+import { closeMenu, leaveByEscape } from './popover';
 import { keyText, SHORTCUTS } from './shortcuts';
 import { useStore } from './store-context';
 
@@ -38,14 +39,7 @@ export function SaveMenu() {
         role="group"
         aria-label="Project"
         onToggle={(event) => event.newState === 'open' && menu.current?.querySelector('button')?.focus()}
-        onKeyDown={(event) => {
-          if (event.key !== 'Escape') return;
-          // Esc belongs to the innermost thing; the page must not hear of it.
-          event.preventDefault();
-          event.stopPropagation();
-          menu.current?.hidePopover();
-          opener.current?.focus();
-        }}
+        onKeyDown={(event) => leaveByEscape(event, () => closeMenu(menu.current, opener.current))}
       >
         <Entry
           icon="music"

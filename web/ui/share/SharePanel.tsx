@@ -4,6 +4,7 @@ import { embedSnippet } from '../../app/embed';
 import { SAFE_LINK } from '../../app/actions/share';
 import { messageOf } from '../../app/context';
 import { Icon } from '../Icon';
+import { leaveByEscape } from '../popover';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 
@@ -40,14 +41,12 @@ export function Share() {
         ref={panel}
         role="dialog"
         aria-labelledby="share-title"
-        onKeyDown={(event) => {
-          if (event.key !== 'Escape') return;
-          // Esc belongs to the innermost thing; the page must not hear of it.
-          event.preventDefault();
-          event.stopPropagation();
-          store.toggleShare(false);
-          opener.current?.focus();
-        }}
+        onKeyDown={(event) =>
+          leaveByEscape(event, () => {
+            store.toggleShare(false);
+            opener.current?.focus();
+          })
+        }
         onToggle={(event) => store.toggleShare(event.newState === 'open')}
       >
         {open && <Panel />}

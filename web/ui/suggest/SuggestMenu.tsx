@@ -6,13 +6,11 @@ import { spec } from '../../core/spec';
 import type { Density } from '../../core/suggest';
 import { Icon } from '../Icon';
 import { Slider } from '../inspector/Slider';
+import { leaveByEscape, closeMenu, placeMenu } from '../popover';
 import { useStore } from '../store-context';
 
 /** Id of the menu's element, for the button that opens it. */
 export const SUGGEST_MENU_ID = 'suggest-menu';
-/** Room between the menu and the page's edges, and its button, CSS pixels. */
-const MARGIN = 8;
-
 const DENSITIES: readonly { value: Density; label: string; title: string }[] = [
   { value: 'beat', label: 'Beat', title: 'A pose on every beat' },
   { value: 'half', label: 'Half bar', title: 'Two poses in each bar' },
@@ -51,19 +49,6 @@ export function SuggestMenu({ opener }: { opener: RefObject<HTMLButtonElement | 
   // A choice that is not there any more falls back to the whole.
   const place = places.find(({ value, off }) => value === suggestChoice.value.place && !off)?.value ?? 'all';
 
-  /** Above the button, where the stage is; below it where there is more room. */
-  const settle = () => {
-    const [element, button] = [menu.current!, opener.current!.getBoundingClientRect()];
-    const { width } = element.getBoundingClientRect();
-    const above = button.top - 2 * MARGIN;
-    const below = innerHeight - button.bottom - 2 * MARGIN;
-    const up = above >= below;
-    element.style.maxHeight = `${Math.max(above, below)}px`;
-    element.style.left = `${Math.max(MARGIN, Math.min(button.left, innerWidth - width - MARGIN))}px`;
-    element.style.top = up ? 'auto' : `${button.bottom + MARGIN}px`;
-    element.style.bottom = up ? `${innerHeight - button.top + MARGIN}px` : 'auto';
-  };
-
   return (
     <div
       id={SUGGEST_MENU_ID}
@@ -74,18 +59,11 @@ export function SuggestMenu({ opener }: { opener: RefObject<HTMLButtonElement | 
       aria-label="What to suggest"
       onToggle={(event) => {
         if (event.newState !== 'open') return;
-        settle();
+        placeMenu(menu.current!, opener.current!);
         store.warmSuggester();
         menu.current?.querySelector<HTMLElement>('input:checked')?.focus();
       }}
-      onKeyDown={(event) => {
-        if (event.key !== 'Escape') return;
-        // Esc belongs to this menu; the page must not hear of it.
-        event.preventDefault();
-        event.stopPropagation();
-        menu.current?.hidePopover();
-        opener.current?.focus();
-      }}
+      onKeyDown={(event) => leaveByEscape(event, () => closeMenu(menu.current, opener.current))}
     >
       <Choices label="A pose every">
         {DENSITIES.map((each) => (

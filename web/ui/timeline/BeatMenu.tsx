@@ -1,32 +1,17 @@
 import type { ComponentChildren, RefObject } from 'preact';
 import { useRef } from 'preact/hooks';
 import { tip } from '../shortcuts';
+import { leaveByEscape, closeMenu, placeMenu } from '../popover';
 import { useStore } from '../store-context';
 
 /** Id of the menu's element, for the button that opens it. */
 export const MENU_ID = 'beat-menu';
-/** Room between the menu and the page's edges, and its button, CSS pixels. */
-const MARGIN = 8;
-
 /** What else can be done to the beats: a popover of the browser's own. */
 export function BeatMenu({ opener }: { opener: RefObject<HTMLButtonElement | null> }) {
   const store = useStore();
   const { grid, document: project, ripple, metronome, loop } = store.state;
   const menu = useRef<HTMLDivElement>(null);
   const meter = grid.value?.beatsPerBar;
-
-  /** Above the button, where the stage is; below it where there is more room. */
-  const place = () => {
-    const [element, button] = [menu.current!, opener.current!.getBoundingClientRect()];
-    const { width } = element.getBoundingClientRect();
-    const above = button.top - 2 * MARGIN;
-    const below = innerHeight - button.bottom - 2 * MARGIN;
-    const up = above >= below;
-    element.style.maxHeight = `${Math.max(above, below)}px`;
-    element.style.left = `${Math.max(MARGIN, Math.min(button.left, innerWidth - width - MARGIN))}px`;
-    element.style.top = up ? 'auto' : `${button.bottom + MARGIN}px`;
-    element.style.bottom = up ? `${innerHeight - button.top + MARGIN}px` : 'auto';
-  };
 
   return (
     <div
@@ -38,20 +23,15 @@ export function BeatMenu({ opener }: { opener: RefObject<HTMLButtonElement | nul
       aria-label="Beats"
       onToggle={(event) => {
         if (event.newState !== 'open') return;
-        place();
+        placeMenu(menu.current!, opener.current!);
         menu.current?.querySelector<HTMLElement>('button:not(:disabled)')?.focus();
       }}
-      onKeyDown={(event) => {
-        if (event.key !== 'Escape') return;
-        // Esc belongs to the innermost thing: the taps, then this menu; the page must not hear of it.
-        event.preventDefault();
-        event.stopPropagation();
-        if (store.state.tapping.value) store.cancelTaps();
-        else {
-          menu.current?.hidePopover();
-          opener.current?.focus();
-        }
-      }}
+      // The taps first, then this menu.
+      onKeyDown={(event) =>
+        leaveByEscape(event, () =>
+          store.state.tapping.value ? store.cancelTaps() : closeMenu(menu.current, opener.current),
+        )
+      }
     >
       <Row label="Tempo">
         <Do run={() => store.halveBeats()} title="Every second beat only">

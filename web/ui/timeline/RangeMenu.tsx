@@ -4,13 +4,11 @@ import { rangeName } from '../../app/range-name';
 import type { TakeRange } from '../../core/document';
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
+import { closeMenu, leaveByEscape, MARGIN } from '../popover';
 import { useStore } from '../store-context';
 
 /** Id of the menu's element, for the chips that open it. */
 export const RANGE_MENU_ID = 'range-menu';
-/** Room between the menu and the page's edges, and its chip, CSS pixels. */
-const MARGIN = 8;
-
 /** The takes of a range: choose, delete, make another. A popover of the browser's own. */
 export function RangeMenu({ range, opener }: { range: TakeRange; opener: RefObject<HTMLButtonElement | null> }) {
   const store = useStore();
@@ -28,10 +26,7 @@ export function RangeMenu({ range, opener }: { range: TakeRange; opener: RefObje
     element.style.bottom = `${innerHeight - chip.top + MARGIN}px`;
     element.style.maxHeight = `${chip.top - 2 * MARGIN}px`;
   };
-  const close = () => {
-    menu.current?.hidePopover();
-    opener.current?.focus();
-  };
+  const close = () => closeMenu(menu.current, opener.current);
 
   const choices = [
     { id: null, label: 'Whole dance' },
@@ -51,13 +46,7 @@ export function RangeMenu({ range, opener }: { range: TakeRange; opener: RefObje
         place();
         menu.current?.querySelector<HTMLElement>('input:checked')?.focus();
       }}
-      onKeyDown={(event) => {
-        if (event.key !== 'Escape') return;
-        // Esc belongs to the innermost thing; the page must not hear of it.
-        event.preventDefault();
-        event.stopPropagation();
-        close();
-      }}
+      onKeyDown={(event) => leaveByEscape(event, close)}
     >
       <p class="range-title">{`${name[0].toUpperCase()}${name.slice(1)}`}</p>
       <div role="radiogroup" aria-label="On stage">
