@@ -54,12 +54,12 @@ export function KeyLane() {
   });
   made.current = seen;
 
-  // Panning only moves the rail, zooming only what is on it: nothing is rendered or laid out.
+  // Panning only moves the rail: nothing is rendered or laid out.
   useSignalEffect(() => {
     const { start, pixelsPerSecond } = state.view.value;
     rail.current?.style.setProperty('transform', `translateX(${-start * pixelsPerSecond}px)`);
   });
-  useSignalEffect(() => placeItems(rail.current, scale.value));
+  // A change of scale renders the lane, and after that each key pose goes to its place.
   useLayoutEffect(() => placeItems(rail.current, scale.peek()));
 
   useLayoutEffect(() => {
