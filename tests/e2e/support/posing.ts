@@ -29,11 +29,14 @@ export async function findJoint(
   throw new Error(`The pointer never found "${label}".`);
 }
 
+/** Heights of an outstretched arm in the view, the likely ones first: a drag of the other arm may have made the trunk lean. */
+const ARM_HEIGHTS = [0.3, 0.33, 0.36, 0.315, 0.345, 0.28, 0.38, 0.26, 0.4, 0.24, 0.42];
+
 /** Points along an outstretched arm of the standing figure, from the shoulder outwards; `side` is where it is on the screen. */
 export const alongTheArm =
   (side: 'left' | 'right') =>
   (box: Box): [number, number][] =>
-    [0.3, 0.33, 0.36].flatMap((height) =>
+    ARM_HEIGHTS.flatMap((height) =>
       Array.from({ length: 50 }, (_, i): [number, number] => [
         box.x + box.width * (0.5 + (side === 'right' ? 1 : -1) * (0.03 + i * 0.004)),
         box.y + box.height * height,
