@@ -56,8 +56,9 @@ def test_numpy_reads_the_npz_without_pickle(files):
     frames = len(truth["joints"])
     assert {name: data[name].shape for name in data.files} == {
         "smpl_poses": (frames, 72), "smpl_trans": (frames, 3), "smpl_scaling": (1,),
-        "poses": (frames, 156), "trans": (frames, 3), "betas": (16,), "gender": (), "mocap_framerate": (),
+        "poses": (frames, 156), "trans": (frames, 3), "betas": (16,), "gender": (), "mocap_framerate": (), "posebeat": (),
     }
+    assert json.loads(str(data["posebeat"])) == truth["origin"]
     assert str(data["gender"]) == "neutral"
     assert float(data["mocap_framerate"]) == truth["fps"]
     assert data["smpl_poses"].dtype == np.float32
@@ -87,6 +88,7 @@ def test_json_is_read_without_any_reader_of_ours(files):
     folder, truth = files
     raw = json.loads((folder / "dance.json").read_text())
     assert raw["joints"] == SPEC["skeleton"]["joints"]
+    assert raw["origin"] == truth["origin"]
     np.testing.assert_allclose(np.array(raw["root"]), truth["root"], atol=1e-6)
     quaternions = np.array(raw["rotations"]).reshape(len(truth["root"]), 24, 4)
     np.testing.assert_allclose(np.linalg.norm(quaternions, axis=-1), 1, atol=1e-5)

@@ -1,7 +1,10 @@
+import { unzipSync } from 'fflate';
+import { GLTFLoader, type GLTF } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { describe, expect, it } from 'vitest';
 import { createApi } from '../../web/app/api';
 import { writeMotionFile } from '../../web/app/motion-file';
 import { estimateBytes, type MotionFileRequest } from '../../web/app/motion-formats';
+import { projectHash } from '../../web/app/motion-origin';
 import { inputsOf } from '../../web/app/recipe';
 import { createStore } from '../../web/app/store';
 import { Player } from '../../web/audio/player';
@@ -87,6 +90,43 @@ describe('exporting the dance', () => {
     expect(keyPoses).toEqual([{ time: 1, name: 'stand' }]);
   });
 
+  it('says in GLB, npz and JSON where the dance comes from: the hash that the page gives, and what made it', async () => {
+    const { api, store } = await page();
+    await store.loadSong(new File(['song'], 'a song.mp3'));
+    const { motionHash } = await api.generate({ engine: 'light' });
+    const bytes = async (format: 'glb' | 'npz' | 'json') =>
+      new Uint8Array(await (await api.exportAs(format, { range: { start: 1, end: 3 }, figure: false })).arrayBuffer());
+    const { dials, camera } = store.state.document.value;
+    expect(camera).toBeNull();
+    const origin = {
+      motionHash,
+      frames: 300,
+      from: 30,
+      to: 91,
+      projectHash: await projectHash(store.state.document.value),
+      engine: 'light',
+      ...dials,
+      model: 'light',
+      backend: 'wasm',
+    };
+    expect(motionHash).toMatch(/^[0-9a-f]{64}$/);
+    const { parser } = await new GLTFLoader().parseAsync((await bytes('glb')).buffer, '');
+    expect((parser.json as GLTF).asset).toMatchObject({ extras: { posebeat: origin } });
+    expect(readMotionJson(new TextDecoder().decode(await bytes('json'))).origin).toEqual(origin);
+    // NumPy's unicode is UTF-32.
+    const array = unzipSync(await bytes('npz'))['posebeat.npy'];
+    const start = 10 + new DataView(array.buffer, array.byteOffset).getUint16(8, true);
+    const letters = new Uint32Array(array.slice(start).buffer);
+    expect(JSON.parse(String.fromCodePoint(...letters))).toEqual(origin);
+    // What the project has moved on from is not called its dance, and dials that a call gave are not the project's.
+    store.setDial('variation', 0.9);
+    const later = readMotionJson(new TextDecoder().decode(await bytes('json'))).origin!;
+    expect(later).toMatchObject({ motionHash, seed: dials.seed, variation: dials.variation });
+    expect(later.projectHash).toBeUndefined();
+    await api.generate({ seed: 77 });
+    expect(readMotionJson(new TextDecoder().decode(await bytes('json'))).origin?.seed).toBeUndefined();
+  });
+
   it('refuses what it does not know', async () => {
     const { api, dance } = await page();
     await dance();
@@ -99,6 +139,8 @@ describe('exporting the dance', () => {
     const { store, dance } = await page();
     await dance();
     const first = store.exportMotion('npz');
+    expect(store.state.exportJob.value).toEqual({ format: 'npz', fraction: 0 });
+    while (store.state.exportJob.value?.fraction === 0) await new Promise((resolve) => setTimeout(resolve, 0));
     expect(store.state.exportJob.value).toEqual({ format: 'npz', fraction: 0.5 });
     const second = store.exportMotion('json');
     await expect(first).rejects.toThrow('Another file');

@@ -24,12 +24,12 @@ export async function writeMotionFile(
   const text = (content: string) => new TextEncoder().encode(content);
   if (format === 'bvh')
     return text(writeBvh(motion, { units, progress: (fraction) => progress(0.1 + fraction * 0.9) }));
-  if (format === 'npz') return writeNpz(motion);
+  if (format === 'npz') return writeNpz(motion, notes.origin);
   if (format === 'json') return text(writeMotionJson(motion, notes));
   const times = frameTimes(motion);
   const samplers = [...motionSamplers(motion, times), ...(figure ? helperSamplers(motion, times) : [])];
   progress(0.6);
-  const glb = writeGlb({ name, samplers, figure });
+  const glb = writeGlb({ name, samplers, figure, ...(notes.origin ? { extras: { posebeat: notes.origin } } : {}) });
   if (format === 'glb') return glb;
   // The writer brings three along: nobody loads it who wants no FBX.
   const { glbToFbx } = await import('../scene/fbx-file');

@@ -24,6 +24,7 @@ import { writeCurvesJson } from '../../core/formats/curves-json';
 import { messageOf, type Context } from '../context';
 import type { DanceCache } from '../dance-cache';
 import { fileName, saveFile } from '../download';
+import { originOf } from '../motion-origin';
 import type { Dance, State } from '../state';
 import type { DanceActions } from './dance';
 
@@ -199,20 +200,21 @@ export function curveActions(
      * The curves of the dance on stage, changes included, as a file: our JSON, or a GLB animation of cubic splines.
      * @throws Error when the dance on stage has no curves
      */
-    exportCurves(as: 'json' | 'glb' = 'json'): Blob {
+    async exportCurves(as: 'json' | 'glb' = 'json'): Promise<Blob> {
       if (as !== 'json' && as !== 'glb') throw new Error('as must be "json" or "glb".');
       const curves = curvesOnStage(state)?.shown;
       if (!curves) throw new Error('This dance has no curves: generate it with the engine "curves" first.');
       const name = state.document.value.song?.name ?? 'dance';
+      const origin = await originOf(state, state.dance.value!);
       return as === 'json'
-        ? new Blob([writeCurvesJson(curves)], { type: 'application/json' })
-        : new Blob([writeCurvesGlb(curves, name)], { type: 'model/gltf-binary' });
+        ? new Blob([writeCurvesJson(curves, origin)], { type: 'application/json' })
+        : new Blob([writeCurvesGlb(curves, name, origin)], { type: 'model/gltf-binary' });
     },
 
     /** Saves the curves as a file for the visitor to keep; what is wrong becomes a notice. */
-    saveCurves(as: 'json' | 'glb'): void {
+    async saveCurves(as: 'json' | 'glb'): Promise<void> {
       try {
-        const blob = actions.exportCurves(as);
+        const blob = await actions.exportCurves(as);
         const name = fileName(state.document.value.song?.name ?? 'dance', as === 'json' ? 'curves.json' : 'glb');
         saveFile(blob, name);
         context.announce(`${name} is saved.`);

@@ -4,10 +4,12 @@ import type { GlbFigure } from '../../core/formats/glb-write';
 import type { MotionNotes } from '../../core/formats/motion-json';
 import { sliceMotion } from '../../core/motion';
 import type { Motion } from '../../core/types';
+import type { Dance } from '../state';
 import { isAbort, messageOf, type Context } from '../context';
 import { fileName, saveFile } from '../download';
 import { FRAME_RATES, MOTION_FORMATS, MOTION_TYPES, type MotionFormat } from '../motion-formats';
 import type { MotionFileWriter } from '../export-client';
+import { originOf } from '../motion-origin';
 import { trimFrames } from '../recipe';
 
 /** How a motion file is made; everything may be left out. */
@@ -54,12 +56,12 @@ export function exportActions(context: Context) {
   const write = services.writeMotionFile ?? inWorker;
   let running: AbortController | null = null;
 
-  const dance = (): Motion => {
+  const dance = (): Dance => {
     const shown = state.onStage.value;
     if (!shown || shown.kind === 'preview') {
       throw new Error('There is no dance yet: drop a song and press Generate, then export it.');
     }
-    return shown.motion;
+    return shown;
   };
 
   /** The frames that a wish for a part means. */
@@ -121,7 +123,8 @@ export function exportActions(context: Context) {
       throw new Error(`fps must be one of ${FRAME_RATES.join(', ')}.`);
     }
     if (units !== 'm' && units !== 'cm') throw new Error('units must be "m" or "cm".');
-    const motion = dance();
+    const shown = dance();
+    const { motion } = shown;
     const part = framesOf(motion, options.range);
     running?.abort(new DOMException('Another file was asked for.', 'AbortError'));
     const own = (running = new AbortController());
@@ -130,15 +133,20 @@ export function exportActions(context: Context) {
     };
     job(0);
     try {
+      const name = state.document.value.song?.name ?? 'dance';
+      const notes = notesOf(motion, part);
+      const dressed = withFigure && (format === 'glb' || format === 'fbx');
+      const [origin, figure] = await Promise.all([originOf(state, shown, part), dressed ? loadGlbFigure() : undefined]);
+      own.signal.throwIfAborted();
       const bytes = await write(
         {
           format,
           motion: sliceMotion(motion, part.from, part.to),
           fps,
           units,
-          name: state.document.value.song?.name ?? 'dance',
-          notes: notesOf(motion, part),
-          ...((format === 'glb' || format === 'fbx') && withFigure ? { figure: await loadGlbFigure() } : {}),
+          name,
+          notes: { ...notes, origin },
+          ...(figure ? { figure } : {}),
         },
         job,
         own.signal,
@@ -158,7 +166,7 @@ export function exportActions(context: Context) {
     /** How many frames of the dance on stage an export would take; null when there is no dance or no such part. */
     exportFrames(range: MotionFileOptions['range']): number | null {
       try {
-        const { from, to } = framesOf(dance(), range);
+        const { from, to } = framesOf(dance().motion, range);
         return to - from;
       } catch {
         return null;

@@ -7,7 +7,8 @@
  *   "channels": ["root.x", "root.y", "root.z", "pelvis.x", "pelvis.y", "pelvis.z", "pelvis.w", ...],   99: root in metres, unit quaternions
  *   "keys": [{"time": 0.5, "pose": "k1" or "beat": 4, "values": [99 numbers]}, ...],   ascending; a key pose of the visitor, or one on a beat
  *   "intervals": [{"shares": [0.333, 0.667],   one less than keys: where the two inner knots are between its two keys
- *     "knots": [[99 numbers], [99 numbers]], "tension": [99], "continuity": [99], "bias": [99]}, ...] }
+ *     "knots": [[99 numbers], [99 numbers]], "tension": [99], "continuity": [99], "bias": [99]}, ...],
+ *   "origin": {"motionHash", "frames", ...} }   optional; what the dance was made from (`motion-origin.ts`)
  * ```
  * With p the knot, a and b the ways from the knot before and to the knot after (over both keys and inner knots), h the time from the knot
  * before to the knot after, and t, c, s tension, continuity and bias, a channel arrives at p with the velocity
@@ -19,6 +20,7 @@ import * as v from 'valibot';
 import { CHANNELS, emptyCurves, INNER_KNOTS, SHAPE_SIZE, type CurveAnchor, type CurveDance } from '../curves';
 import { SHAPE_NAMES } from '../curves-edit';
 import { JOINT_COUNT, JOINTS, OFFSETS, PARENTS } from '../skeleton';
+import type { MotionOrigin } from './motion-origin';
 
 const VERSION = 1;
 const MAX_KEYS = 100_000;
@@ -69,7 +71,7 @@ const short = (value: number) => Number(value.toFixed(DIGITS)) + 0;
  * Writes the file; numbers have six digits after the point.
  * @throws Error when there is no key pose
  */
-export function writeCurvesJson(curves: CurveDance): string {
+export function writeCurvesJson(curves: CurveDance, origin?: MotionOrigin | null): string {
   const { duration, times, anchors, keys, inner, shares, shape } = curves;
   if (times.length === 0) throw new Error('The curves have no key pose: generate the dance again.');
   const line = (values: Float32Array, at: number) =>
@@ -93,6 +95,7 @@ export function writeCurvesJson(curves: CurveDance): string {
     parents: PARENTS,
     offsets: OFFSETS,
     channels: channelNames(),
+    ...(origin ? { origin } : {}),
   };
   const members = Object.entries(head).map(([name, value]) => `"${name}": ${JSON.stringify(value)}`);
   const list = (lines: string[]) => (lines.length > 0 ? `[\n${lines.join(',\n')}\n]` : '[]');

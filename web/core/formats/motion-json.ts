@@ -7,7 +7,8 @@
  *   "root": [[x, y, z], ...],                     pelvis, metres, one row per frame; right-handed, Y up, the rest pose faces +Z
  *   "rotations": [[x, y, z, w, x, y, z, w, ...], ...],   joints' local unit quaternions, one row per frame; joint 0 turns in the world
  *   "song": {"name", "start", "tempo", "beatsPerBar", "beats", "downbeats"},   optional; start: where in the song frame 0 is; beats in seconds from frame 0
- *   "keyPoses": [{"time", "name"}] }              optional; seconds from frame 0
+ *   "keyPoses": [{"time", "name"}],               optional; seconds from frame 0
+ *   "origin": {"motionHash", "frames", ...} }     optional; what the dance was made from (`motion-origin.ts`)
  * ```
  */
 import * as v from 'valibot';
@@ -15,6 +16,7 @@ import { emptyMotion } from '../motion';
 import { canonicalQuaternion } from '../rotation';
 import { JOINT_COUNT, JOINTS, OFFSETS, PARENTS } from '../skeleton';
 import type { Motion } from '../types';
+import { originSchema, type MotionOrigin } from './motion-origin';
 
 const VERSION = 1;
 const MAX_FRAMES = 200_000;
@@ -45,12 +47,15 @@ const schema = v.object({
   rotations: rows(JOINT_COUNT * 4),
   song: v.optional(song),
   keyPoses: v.optional(v.pipe(v.array(keyPose), v.maxLength(MAX_MARKS))),
+  // Whatever another program wrote there, the dance is the dance.
+  origin: v.fallback(v.optional(originSchema), undefined),
 });
 
-/** The music and the key poses that a dance goes with. */
+/** The music and the key poses that a dance goes with, and where it comes from. */
 export interface MotionNotes {
   song?: v.InferOutput<typeof song>;
   keyPoses?: v.InferOutput<typeof keyPose>[];
+  origin?: MotionOrigin;
 }
 
 const short = (value: number) => Number(value.toFixed(DIGITS)) + 0;
@@ -107,7 +112,7 @@ export function readMotionJson(text: string): { motion: Motion } & MotionNotes {
     const where = v.getDotPath(parsed.issues[0]) ?? 'the file';
     throw new Error(`This is no dance file of Posebeat, or it is damaged: “${where}” is wrong.`);
   }
-  const { version, fps, frames, joints, root, rotations, song: music, keyPoses } = parsed.output;
+  const { version, fps, frames, joints, root, rotations, song: music, keyPoses, origin } = parsed.output;
   if (version > VERSION) throw new Error('This dance file was made by a newer Posebeat: reload the page.');
   if (joints.length !== JOINT_COUNT || joints.some((name, i) => name !== JOINTS[i])) {
     throw new Error('This dance file is of another skeleton: 24 joints of SMPL are understood.');
@@ -123,5 +128,10 @@ export function readMotionJson(text: string): { motion: Motion } & MotionNotes {
       motion.quaternions.set(canonicalQuaternion(pose.slice(i, i + 4)), frame * JOINT_COUNT * 4 + i);
     }
   }
-  return { motion, ...(music ? { song: music } : {}), ...(keyPoses ? { keyPoses } : {}) };
+  return {
+    motion,
+    ...(music ? { song: music } : {}),
+    ...(keyPoses ? { keyPoses } : {}),
+    ...(origin ? { origin } : {}),
+  };
 }

@@ -4,6 +4,8 @@
  * - AMASS (Mahmood et al. 2019): `poses` [N, 156] (22 joints of the body, then 30 of the hands, which are zero), `trans` [N, 3], `betas`
  *   [16], `gender`, `mocap_framerate`; Z up.
  *
+ * `posebeat` is a text of JSON: where the dance comes from (`motion-origin.ts`), if that is known.
+ *
  * Both translations are the pelvis's place, metres. A SMPL body whose pelvis is not at its own origin stands off by that offset.
  */
 import { zipSync } from 'fflate';
@@ -11,6 +13,7 @@ import { motionToAxisAngle } from '../motion';
 import { multiply, quaternionToAxisAngle } from '../rotation';
 import { JOINT_COUNT } from '../skeleton';
 import type { Motion } from '../types';
+import type { MotionOrigin } from './motion-origin';
 import { writeNpy, type NpyValue } from './npy-write';
 
 /** Joints that SMPL and SMPL-H share. */
@@ -23,7 +26,7 @@ const UPRIGHT = [Math.SQRT1_2, 0, 0, Math.SQRT1_2];
 const DAY = new Date(1980, 0, 1);
 
 /** The arrays of the file by name. */
-export function smplArrays(motion: Motion): Record<string, NpyValue> {
+export function smplArrays(motion: Motion, origin?: MotionOrigin): Record<string, NpyValue> {
   const { frames, fps, root, quaternions } = motion;
   if (frames < 1) throw new Error('The dance has no frames yet: generate it first.');
   const flat = motionToAxisAngle(motion);
@@ -45,6 +48,7 @@ export function smplArrays(motion: Motion): Record<string, NpyValue> {
     betas: { shape: [16], data: new Float64Array(16) },
     gender: 'neutral',
     mocap_framerate: { shape: [], data: Float64Array.of(fps) },
+    ...(origin ? { posebeat: JSON.stringify(origin) } : {}),
   };
 }
 
@@ -52,7 +56,7 @@ export function smplArrays(motion: Motion): Record<string, NpyValue> {
  * Writes an npz file at the dance's own frame rate. AIST++'s own tools take 60 frames per second for granted.
  * @throws Error when the dance has no frames
  */
-export function writeNpz(motion: Motion): Uint8Array<ArrayBuffer> {
-  const files = Object.entries(smplArrays(motion)).map(([name, value]) => [`${name}.npy`, writeNpy(value)]);
+export function writeNpz(motion: Motion, origin?: MotionOrigin): Uint8Array<ArrayBuffer> {
+  const files = Object.entries(smplArrays(motion, origin)).map(([name, value]) => [`${name}.npy`, writeNpy(value)]);
   return zipSync(Object.fromEntries(files), { level: 6, mtime: DAY }) as Uint8Array<ArrayBuffer>;
 }
