@@ -25,6 +25,8 @@ export interface Autosave {
 export function startAutosave(context: Context, save: () => void): Autosave {
   const { state, services } = context;
   let settled: ProjectDocument | null = null;
+  /** On its way into storage, or refused by it. */
+  let unsaved: ProjectDocument | null = null;
   let timer: ReturnType<typeof setTimeout> | undefined;
   let waitingSince = 0;
   let told = false;
@@ -35,9 +37,10 @@ export function startAutosave(context: Context, save: () => void): Autosave {
     timer = undefined;
     const document = state.document.value;
     if (!settled || document === settled || !document.song || services.tabs?.writes.value === false) return;
-    settled = document;
+    settled = unsaved = document;
     try {
       await services.storage.saveDocument(document);
+      if (unsaved === document) unsaved = null;
       state.unkept.value = false;
       persistOnce(document);
     } catch (error) {
@@ -73,9 +76,18 @@ export function startAutosave(context: Context, save: () => void): Autosave {
     timer = setTimeout(() => void write(), Math.min(DELAY, Math.max(0, left)));
   });
 
+  /** The page goes away: what is not saved for good is noted, since nothing that takes time may come to its end. */
+  const leave = () => {
+    const document = state.document.value;
+    const writes = services.tabs?.writes.value !== false;
+    if (settled && document.song && writes && (document !== settled || unsaved)) {
+      services.storage.noteDocument?.(document);
+    }
+    void write();
+  };
   if (typeof window !== 'undefined') {
-    window.addEventListener('pagehide', () => void write());
-    document.addEventListener('visibilitychange', () => document.visibilityState === 'hidden' && void write());
+    window.addEventListener('pagehide', leave);
+    document.addEventListener('visibilitychange', () => document.visibilityState === 'hidden' && leave());
   }
 
   return {
@@ -83,6 +95,9 @@ export function startAutosave(context: Context, save: () => void): Autosave {
     get settled() {
       return settled;
     },
-    settle: (document) => (settled = document),
+    settle(document) {
+      settled = document;
+      unsaved = null;
+    },
   };
 }

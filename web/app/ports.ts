@@ -101,6 +101,8 @@ export interface SavedDance {
 /** The browser's own storage; every method tolerates its absence by rejecting. */
 export interface Storage {
   saveDocument(document: ProjectDocument): Promise<void>;
+  /** Writes a document down before it returns, for a page that may not live to see it saved; saving it takes the note away. */
+  noteDocument?(document: ProjectDocument): void;
   saveDance(dance: SavedDance): Promise<void>;
   saveSong(hash: string, song: Blob): Promise<void>;
   loadSong(hash: string): Promise<Blob | null>;

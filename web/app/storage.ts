@@ -1,6 +1,7 @@
 /** The visitor's work in this browser: one project and its dance in IndexedDB, the bytes of the last few songs in the private file system. */
 import { openDB, type DBSchema, type IDBPDatabase } from 'idb';
 import type { ProjectDocument } from '../core/document';
+import { leavingNote } from './leaving-note';
 import type { SavedDance, Storage } from './ports';
 import { songFiles } from './song-files';
 
@@ -39,6 +40,9 @@ export function createStorage(name = 'posebeat', mayWrite: () => boolean = () =>
   /** The database once it is open: a page that goes away cannot wait for it. */
   let ready: IDBPDatabase<Schema> | null = null;
   const files = songFiles(`${name}-songs`);
+  const note = leavingNote(name);
+  /** Noted by this page and not saved yet. */
+  let noted: ProjectDocument | null = null;
   const database = () => {
     opening ??= openDB<Schema>(name, 1, {
       upgrade(db) {
@@ -89,7 +93,17 @@ export function createStorage(name = 'posebeat', mayWrite: () => boolean = () =>
 
   return {
     async saveDocument(document: ProjectDocument) {
-      if (mayWrite()) await putWork('document', document);
+      if (!mayWrite()) return;
+      await putWork('document', document);
+      // What another page had noted is older than this; what this page noted may be newer.
+      if (noted !== null && noted !== document) return;
+      noted = null;
+      note.clear();
+    },
+    noteDocument(document) {
+      if (!mayWrite()) return;
+      noted = document;
+      note.write(document);
     },
     async saveDance(dance: SavedDance) {
       if (mayWrite()) await putWork('dance', dance);
@@ -117,7 +131,7 @@ export function createStorage(name = 'posebeat', mayWrite: () => boolean = () =>
     },
     async load() {
       const db = await database();
-      const document = await db.get('work', 'document');
+      const document = note.read() ?? (await db.get('work', 'document'));
       if (document === undefined) return null;
       const dance = (await db.get('work', 'dance')) as SavedDance | undefined;
       return { document, dance: dance ?? null };

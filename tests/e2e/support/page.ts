@@ -30,6 +30,46 @@ export async function open(page: Page, query = '', { smooth = false } = {}): Pro
   await page.evaluate(() => window.posebeat.ready);
 }
 
+/** Reloads the page and waits until its API is ready again. */
+export async function reload(page: Page): Promise<void> {
+  await page.reload();
+  await page.waitForFunction(() => 'posebeat' in window);
+  await page.evaluate(() => window.posebeat.ready);
+}
+
+/** What this browser does not keep yet of the page's work, in words; empty when all of it is kept. */
+const missing = (page: Page, dance: boolean) =>
+  page.evaluate(async (dance) => {
+    // Opening a database that is not there would make an empty one.
+    if (!(await indexedDB.databases()).some(({ name }) => name === 'posebeat')) return 'the database';
+    const answer = <T>(request: IDBRequest<T>) =>
+      new Promise<T>((resolve, reject) => {
+        request.onsuccess = () => resolve(request.result);
+        request.onerror = () => reject(request.error!);
+      });
+    const database = await answer(indexedDB.open('posebeat'));
+    try {
+      const read = (table: string, key: string) =>
+        answer(database.transaction(table).objectStore(table).get(key)) as Promise<unknown>;
+      const document = window.posebeat.document();
+      if (JSON.stringify(await read('work', 'document')) !== JSON.stringify(document)) return 'the document';
+      // The demo's song comes with the page.
+      const demo = window.document.querySelector('.song-title')?.textContent.includes('(demo)');
+      if (document.song && !demo && !(await read('songs', document.song.hash))) return 'the song';
+      const motion = dance ? window.posebeat.motion() : null;
+      if (!motion) return '';
+      const kept = (await read('work', 'dance')) as { motion: { root: Float32Array } } | undefined;
+      return kept?.motion.root.every((metres, i) => metres === motion.root[i]) ? '' : 'the dance';
+    } finally {
+      database.close();
+    }
+  }, dance);
+
+/** Waits until document and song, and with `dance` the dance on stage, are kept for the next visit. */
+export async function saved(page: Page, { dance = false } = {}): Promise<void> {
+  await expect.poll(() => missing(page, dance), { message: 'what is not kept yet' }).toBe('');
+}
+
 /** Loads a song through the public API; bytes travel as base64. */
 export async function loadSong(page: Page, bytes: Buffer, name = 'song.wav', type = 'audio/wav') {
   return page.evaluate(

@@ -131,6 +131,8 @@ export function songActions(context: Context, dance: DanceActions) {
       keepOnShelf();
       show(fresh, same ? before.dance : null);
       shown = true;
+      // Before the analysis, not after it: the page may be left at any time.
+      if (!options.restore) bytesOf.keep(hash, file, options.name);
       state.songJob.value = { name: options.name, stage: 'analysing', fraction: 0 };
       if (options.start) void dance.loadModel(undefined, state.document.value.engine).catch(() => undefined);
 
@@ -191,7 +193,6 @@ export function songActions(context: Context, dance: DanceActions) {
       state.songJob.value = null;
       context.announce(`${options.name}: ${Math.round(analysis.grid.tempo)} beats per minute.`);
       bytesOf.remember(hash, file);
-      if (!options.restore) bytesOf.keep(hash, file, options.name);
       return state.song.value!;
     } catch (error) {
       if (job === own) {
