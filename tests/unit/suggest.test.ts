@@ -14,10 +14,10 @@ import {
   suggestionBeats,
   suggestPoses,
   temperatureOf,
-  VISIBLE_DISTANCE,
   type StepRunner,
   type SuggestRequest,
 } from '../../web/core/suggest';
+import { FORBIDDEN, MOST_TRIES, VISIBLE_DISTANCE } from '../../web/core/suggest-moving';
 import { poseDistance, ROW_SIZE } from '../../web/core/suggest-pose';
 import type { StepInputs } from '../../web/core/suggest-step';
 import type { BeatGrid, Features, KeyPose } from '../../web/core/types';
@@ -76,6 +76,19 @@ function fakeNetwork(steps: StepInputs[] = [], angle = (code: number) => -1.2 + 
   };
 }
 
+/** The same on a figure that leans another way on each of three beats, so that no pose stands still. */
+function leaningNetwork(steps: StepInputs[] = [], angle?: (code: number) => number): StepRunner {
+  const network = fakeNetwork(steps, angle);
+  const leans = [0, 1, 2].map((lean) => quaternionsToSixD(poseToQuaternions(pose(lean, 'pelvis'))).subarray(0, 6));
+  return async (inputs) => {
+    const found = await network(inputs);
+    const newest = inputs.poses.data.subarray(15 * ROW_SIZE, 15 * ROW_SIZE + 6);
+    const before = leans.findIndex((lean) => lean.every((v, i) => Math.abs(v - newest[i]) < 1e-3));
+    found.poses.set(leans[(before + 1) % 3]);
+    return found;
+  };
+}
+
 describe('the beats that get a pose', () => {
   it('are all, two in a bar, or the first of each bar', () => {
     expect(suggestionBeats(request())).toHaveLength(39);
@@ -118,7 +131,7 @@ describe('suggesting', () => {
   it('walks the beats one by one: each step has the poses before it and the music around it', async () => {
     const steps: StepInputs[] = [];
     const parts: number[] = [];
-    const found = await suggestPoses(request({ range: { start: 0, end: 9 } }), fakeNetwork(steps), {
+    const found = await suggestPoses(request({ range: { start: 0, end: 9 } }), leaningNetwork(steps), {
       onPose: ({ time }, fraction) => parts.push(time, fraction),
     });
     expect(found.map(({ time }) => time)).toEqual(beats.slice(0, 19));
@@ -146,8 +159,8 @@ describe('suggesting', () => {
 
   it('leads to own key poses and goes on from them', async () => {
     const steps: StepInputs[] = [];
-    const own = key('own', 5.1, { rotations: pose(-0.9) });
-    const found = await suggestPoses(request({ keyPoses: [own], range: { start: 0, end: 8 } }), fakeNetwork(steps));
+    const own = key('own', 5.1, { rotations: pose(1.5, 'pelvis') });
+    const found = await suggestPoses(request({ keyPoses: [own], range: { start: 0, end: 8 } }), leaningNetwork(steps));
     expect(found.map(({ time }) => time)).not.toContain(5);
     expect(found).toHaveLength(16);
     expect(steps[0].next_beats.data[0]).toBeCloseTo(10.2, 6);
@@ -162,7 +175,7 @@ describe('suggesting', () => {
 
   it('does not look at a key pose that is too far ahead', async () => {
     const steps: StepInputs[] = [];
-    await suggestPoses(request({ keyPoses: [key('own', 10)], range: { start: 0, end: 3 } }), fakeNetwork(steps));
+    await suggestPoses(request({ keyPoses: [key('own', 10)], range: { start: 0, end: 3 } }), leaningNetwork(steps));
     expect(steps[3].next_beats.data[0]).toBe(-1);
     expect(steps[4].next_beats.data[0]).toBe(16);
   });
@@ -170,14 +183,14 @@ describe('suggesting', () => {
   it('warms up before a stretch in the middle, and gives poses only inside', async () => {
     const steps: StepInputs[] = [];
     const range = { start: 10, end: 12 };
-    const found = await suggestPoses(request({ range, density: 'bar' }), fakeNetwork(steps));
+    const found = await suggestPoses(request({ range, density: 'bar' }), leaningNetwork(steps));
     expect(found.map(({ time }) => time)).toEqual([10.5]);
     expect(steps).toHaveLength(17);
     expect(steps[16].pose_mask.data.every((v) => v === 1)).toBe(true);
   });
 
-  it('gives the same poses for the same seed, whatever the density; others for another', async () => {
-    const make = (more: Partial<SuggestRequest>) => suggestPoses(request(more), fakeNetwork());
+  it('gives the same poses for the same seed, whatever the density where none stands still; others for another', async () => {
+    const make = (more: Partial<SuggestRequest>) => suggestPoses(request(more), leaningNetwork());
     const every = await make({});
     expect(await make({})).toEqual(every);
     const bars = await make({ density: 'bar' });
@@ -189,7 +202,7 @@ describe('suggesting', () => {
   it('holds the limits of the joints', async () => {
     const found = await suggestPoses(
       request({ range: { start: 0, end: 2 } }),
-      fakeNetwork([], () => 3),
+      leaningNetwork([], () => 3),
     );
     const shoulder = jointIndex('left_shoulder');
     expect(withinLimits(shoulder, axisAngleToQuaternion(pose(3).slice(shoulder * 3, shoulder * 3 + 3)))).toBe(false);
@@ -200,7 +213,7 @@ describe('suggesting', () => {
 
   it('holds a root that runs away', async () => {
     const steps: StepInputs[] = [];
-    const network = fakeNetwork(steps);
+    const network = leaningNetwork(steps);
     const runaway: StepRunner = async (inputs) => {
       const found = await network(inputs);
       const before = inputs.poses.data.subarray(16 * ROW_SIZE - 3);
@@ -215,16 +228,90 @@ describe('suggesting', () => {
 
   it('stops when it is told to, and says why there is nothing to do', async () => {
     const controller = new AbortController();
-    const stopped = suggestPoses(request(), fakeNetwork(), {
+    const stopped = suggestPoses(request(), leaningNetwork(), {
       onPose: ({ time }) => time === 3 && controller.abort(),
       signal: controller.signal,
     });
     await expect(stopped).rejects.toThrow(/abort/i);
-    const attempt = (more: Partial<SuggestRequest>) => suggestPoses(request(more), fakeNetwork());
+    const attempt = (more: Partial<SuggestRequest>) => suggestPoses(request(more), leaningNetwork());
     await expect(attempt({ grid: { ...grid, beats: [], downbeats: [] } })).rejects.toThrow(/tap the tempo/);
     await expect(attempt({ gaps: true })).rejects.toThrow(/at least two key poses/);
     await expect(attempt({ range: { start: 3.1, end: 3.2 } })).rejects.toThrow(/another stretch/);
     await expect(attempt({ style: 'foxtrot' })).rejects.toThrow(/no style "foxtrot"/);
+  });
+});
+
+describe('a dance that would stand still', () => {
+  /** One pose for most codes; those over 400 have the figure turned. */
+  const sleepy = (steps: StepInputs[] = [], awake = 400): StepRunner => {
+    const network = fakeNetwork(steps, () => 0);
+    return async (inputs) => {
+      const found = await network(inputs);
+      const turned = quaternionsToSixD(poseToQuaternions(pose(found.codes[0] / 100, 'pelvis')));
+      if (found.codes[0] > awake) found.poses.set(turned.subarray(0, 6));
+      return found;
+    };
+  };
+  const ways = (list: readonly { rotations: readonly number[] }[]) =>
+    list.slice(1).map(({ rotations }, i) => poseDistance(rotations, list[i].rotations));
+
+  it('steps again with the code ruled out, and gives the same poses each time', async () => {
+    const steps: StepInputs[] = [];
+    const wanted = request({ density: 'half' });
+    const found = await suggestPoses(wanted, sleepy(steps, 250));
+    expect(found).toHaveLength(19);
+    expect(Math.min(...ways(found))).toBeGreaterThanOrEqual(VISIBLE_DISTANCE);
+    expect(steps.length).toBeGreaterThan(39);
+    expect(steps.length).toBeLessThan(39 + 19 * (MOST_TRIES - 1));
+    const again = steps.find(({ noise }) => noise.data.includes(FORBIDDEN))!;
+    const before = steps[steps.indexOf(again) - 1];
+    // The same step, but for the code that was taken and a little boldness.
+    expect(again.poses.data).toEqual(before.poses.data);
+    expect(again.noise.data.filter((v, i) => v !== before.noise.data[i])).toEqual(Float32Array.of(FORBIDDEN));
+    expect(again.temperature.data[0]).toBeGreaterThan(before.temperature.data[0]);
+    expect(await suggestPoses(wanted, sleepy([], 250))).toEqual(found);
+  });
+
+  it('asks less of poses that are close in time', async () => {
+    const quick: BeatGrid = { ...grid, beats: beats.map((time) => time / 2), downbeats: [] };
+    const slight = (steps: StepInputs[]): StepRunner => {
+      const network = fakeNetwork(steps, () => 0);
+      let count = 0;
+      // 2 cm from beat to beat.
+      return async (inputs) => {
+        const found = await network(inputs);
+        const lean = pose(0.04 * count++, 'pelvis');
+        found.poses.set(quaternionsToSixD(poseToQuaternions(lean)).subarray(0, 6));
+        return found;
+      };
+    };
+    const steps: StepInputs[] = [];
+    const found = await suggestPoses(request({ grid: quick }), slight(steps));
+    expect(Math.max(...ways(found))).toBeLessThan(VISIBLE_DISTANCE / 2);
+    expect(steps).toHaveLength(39);
+  });
+
+  it('does not repeat the own key pose before it, nor the one right after it', async () => {
+    const own = [key('a', 2, { rotations: REST }), key('b', 4, { rotations: REST })];
+    const at = { keyPoses: own, density: 'half' as const, gaps: true, grid: { ...grid, downbeats: [1, 3] } };
+    const found = await suggestPoses(request(at), sleepy([], 250));
+    expect(found.map(({ time }) => time)).toEqual([3]);
+    expect(poseDistance(found[0].rotations, REST)).toBeGreaterThanOrEqual(VISIBLE_DISTANCE);
+  });
+
+  it('takes the pose that moves most where none moves enough, after a few tries', async () => {
+    const steps: StepInputs[] = [];
+    const found = await suggestPoses(
+      request({ range: { start: 0, end: 1 } }),
+      fakeNetwork(steps, (code) => code / 2000),
+    );
+    expect(found).toHaveLength(3);
+    expect(steps).toHaveLength(1 + 2 * MOST_TRIES);
+    const tried = steps.slice(1, 1 + MOST_TRIES).map(({ noise }) => noise.data.indexOf(Math.max(...noise.data)) / 2000);
+    const first = steps[0].noise.data.indexOf(Math.max(...steps[0].noise.data)) / 2000;
+    const best = Math.max(...tried.map((angle) => Math.abs(angle - first)));
+    const arm = jointIndex('left_shoulder') * 3 + 2;
+    expect(Math.abs(found[1].rotations[arm] - found[0].rotations[arm])).toBeCloseTo(best, 3);
   });
 });
 

@@ -1,6 +1,7 @@
 /** Key poses on beats, suggested by the first stage of DanceFormer: which beats get one, and the steps that make them. */
 import { beatCount } from './beat-count';
 import { frameOf, type TimeRange } from './document';
+import { FORBIDDEN, stepMoving, VISIBLE_DISTANCE, type Neighbour } from './suggest-moving';
 import { poseOfRow, poseDistance, rowOfPose, ROW_SIZE } from './suggest-pose';
 import { StepContext, type Fixed, type StepInputs } from './suggest-step';
 import { seededRandom } from './random';
@@ -59,8 +60,6 @@ const ALTERNATE_BATCH = 8;
 const ALTERNATE_CALLS = 3;
 /** Alternates of a beat. */
 export const ALTERNATES = 4;
-/** Two poses whose joints are less apart than this look the same, metres, mean over the joints. */
-export const VISIBLE_DISTANCE = 0.06;
 
 /** Key poses that a suggestion never touches: those of the visitor, the locked ones, and all outside the stretch. */
 export function keysThatStay(keyPoses: readonly KeyPose[], range: TimeRange): KeyPose[] {
@@ -141,7 +140,8 @@ function gumbel(seed: number, beat: number, draw: number): Float32Array {
 }
 
 /**
- * Suggests poses beat by beat; each is made from the ones before it, leads to the key pose after it, and fits the music.
+ * Suggests poses beat by beat; each is made from the ones before it, leads to the key pose after it, and fits the music. One that nearly
+ * repeats the key pose before it, or the own one right after it, gives way to another: the dance would stand still there.
  * @returns the suggestions in order of time
  * @throws Error when the song has no beats or there is no beat to suggest for; the signal's reason when it is aborted
  */
@@ -156,20 +156,35 @@ export async function suggestPoses(
   const emit = new Set(wanted);
   const first = Math.max(0, wanted[0] - pastPoses);
   const last = wanted[wanted.length - 1];
-  const fixed = fixedBeats(keysThatStay(request.keyPoses, suggestionRange(request) ?? request.range), grid);
-  const context = new StepContext(request.features, grid, fixed, style);
+  const stay = keysThatStay(request.keyPoses, suggestionRange(request) ?? request.range);
+  const context = new StepContext(request.features, grid, fixedBeats(stay, grid), style);
   const temperature = temperatureOf(request.variation);
   const found: SuggestedPose[] = [];
   for (let beat = first; beat <= last; beat++) {
     signal?.throwIfAborted();
-    const { poses } = await run(context.inputs(beat, temperature, [gumbel(seed, beat, 0)]));
-    const rotations = context.take(beat, poses.subarray(0, ROW_SIZE));
+    const time = grid.beats[beat];
+    // Beats that get no key pose lead from one to the next and may rest.
+    const neighbours = emit.has(beat)
+      ? neighboursOf(time, [...stay, ...found], grid.beats[wanted[found.length + 1]])
+      : [];
+    const row = await stepMoving(context, beat, temperature, gumbel(seed, beat, 0), time, neighbours, run);
+    const rotations = context.take(beat, row);
     if (!emit.has(beat)) continue;
-    const pose = { time: grid.beats[beat], rotations };
+    const pose = { time, rotations };
     found.push(pose);
     onPose?.(pose, (beat + 1 - first) / (last + 1 - first));
   }
   return found;
+}
+
+/** The key pose before a time, and the one after it unless a suggestion comes between at `next`, seconds. */
+function neighboursOf(time: number, keys: readonly Neighbour[], next = Infinity): Neighbour[] {
+  const latest = (a: Neighbour | undefined, b: Neighbour) => (a && a.time > b.time ? a : b);
+  const before = keys.filter((key) => key.time < time).reduce<Neighbour | undefined>(latest, undefined);
+  const after = keys
+    .filter((key) => key.time > time && key.time < next)
+    .reduce<Neighbour | undefined>((a, b) => (a && a.time < b.time ? a : b), undefined);
+  return [before, after].filter((key) => key !== undefined);
 }
 
 /**
@@ -200,7 +215,7 @@ export async function alternatePoses(
     signal?.throwIfAborted();
     const noise = Array.from({ length: ALTERNATE_BATCH }, (_, i) => {
       const numbers = gumbel(seed, target, 1 + call * ALTERNATE_BATCH + i);
-      for (const code of taken) numbers[code] = -1e9;
+      for (const code of taken) numbers[code] = FORBIDDEN;
       return numbers;
     });
     const { poses, codes: used } = await run(context.inputs(target, 1, noise));
