@@ -6,7 +6,8 @@
 Writes OUT/checkpoint.pt, OUT/log.jsonl (losses of training and, every --every steps, of the development songs) and OUT/runs.jsonl
 (command, settings, data hash, commit). Development songs are training songs held out for choices; --all trains on them too.
 --adversarial WEIGHT adds the conditional discriminators. Network variants: --body kpm|gnn|linear, --attention learned|gaussian|local|global,
---head codes|regress.
+--head codes|regress. --weights CHECKPOINT starts a new run (fresh rate, fresh optimiser) from the weights of an earlier one;
+--trunk-rate SHARE trains stage 2's in-betweener along with the rest, at that share of the rate (0: it stays as it is).
 """
 
 from __future__ import annotations
@@ -57,6 +58,8 @@ class Settings:
     dropout: float = 0.1
     all: bool = False
     trunk: str = ""  # checkpoint of train_inbetween.py that stage 2 starts from
+    trunk_rate: float = 0.0  # share of the rate that the trunk is trained with
+    weights: str = ""  # checkpoint of this program that a new run starts from
 
 
 def find_codes(dances: list[Dance], rng: torch.Generator, rounds: int = 12) -> tuple[Tensor, Tensor, Tensor]:
@@ -132,15 +135,28 @@ class Trainer:
             self.sampler = IntervalSampler(training, settings.rows or 40, settings.seed)
             self.curve_loss = CurveLoss(losses)
             self.held = [IntervalSampler(held, 100, 77, beats_share=1.0).batch()] if held else []
+        if settings.weights:
+            self.model.load_state_dict(torch.load(settings.weights, weights_only=True, map_location="cpu")["averaged"])
         self.averaged = copy.deepcopy(self.model)
-        decayed = [p for p in self.model.parameters() if p.ndim >= 2 and p.requires_grad]
-        plain = [p for p in self.model.parameters() if p.ndim < 2 and p.requires_grad]
-        groups = [{"params": decayed, "weight_decay": settings.weight_decay}, {"params": plain, "weight_decay": 0.0}]
+        groups = self.groups()
         self.optimiser = torch.optim.AdamW(groups, lr=settings.lr, betas=(0.9, 0.98))
         self.discriminator = Discriminator(settings.stage) if losses.adversarial > 0 else None
         if self.discriminator:
             self.critic = torch.optim.Adam(self.discriminator.parameters(), lr=4e-4, betas=(0.5, 0.9))
         self.steps, self.spent = 0, 0.0
+
+    def groups(self) -> list[dict]:
+        """Parameters by their decay and their share of the rate."""
+        settings, trunk = self.settings, set()
+        if settings.trunk and settings.trunk_rate > 0:
+            trunk = set(self.model.trunk.requires_grad_(True).parameters())
+        trained = [p for p in self.model.parameters() if p.requires_grad]
+        split = [([p for p in trained if (p in trunk) == own and (p.ndim >= 2) == decayed], own, decayed) for own in (False, True) for decayed in (True, False)]
+        return [
+            {"params": found, "weight_decay": settings.weight_decay if decayed else 0.0, "share": settings.trunk_rate if own else 1.0}
+            for found, own, decayed in split
+            if found
+        ]
 
     def loss(self, model: nn.Module, batch, train: bool) -> tuple[Tensor, dict[str, float], dict]:
         if self.settings.stage == "suggest":
@@ -153,7 +169,7 @@ class Trainer:
         total = self.settings.steps or 0
         progress = min(1.0, self.steps / total if total else self.spent / (self.settings.minutes * 60))
         for group in self.optimiser.param_groups:
-            group["lr"] = cosine_rate(self.settings.lr, self.steps, self.settings.warmup, progress)
+            group["lr"] = group.get("share", 1.0) * cosine_rate(self.settings.lr, self.steps, self.settings.warmup, progress)
         begun = time.monotonic()
         loss, terms, made = self.loss(self.model, self.sampler.batch(), True)
         if self.discriminator:
