@@ -1,16 +1,23 @@
 /** Files from the visitor: chosen, dropped, saved. */
-import { isPoseFile } from '../app/pose-reader';
+import { isJson, isPoseFile, jsonKindOf } from '../app/pose-reader';
 import type { Store } from '../app/store';
 
 export { fileName, saveFile } from '../app/download';
 
 const PROJECT = /\.(posebeat|json|zip)$/i;
 
-/** Opens whatever file it is: a project or a song. */
+/** Opens whatever file it is: a project, a song, poses or a dance. */
 export function openFile(store: Store, file: File): void {
   if (isPoseFile(file)) void store.importPoseFile(file);
+  else if (isJson(file)) void openJson(store, file);
   else if (PROJECT.test(file.name)) void store.openProject(file);
   else void store.dropSong(file);
+}
+
+/** JSON of ours is a project, poses or a dance: what it is stands inside. */
+async function openJson(store: Store, file: File): Promise<void> {
+  const kind = await jsonKindOf(file).catch(() => null);
+  await (kind ? store.importPoseFile(file) : store.openProject(file));
 }
 
 /** Asks for a file. */

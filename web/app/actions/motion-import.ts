@@ -29,7 +29,11 @@ export function motionImportActions(context: Context) {
   const opened = () => {
     const open = state.poseImport.value;
     if (!open) throw new Error('Open an animation file first.');
-    return { clip: open.clips[open.clip], frame: open.frame, name: open.file.replace(/\.[a-z0-9]{2,5}$/i, '') };
+    return {
+      clip: open.clips[open.clip],
+      frame: open.frame,
+      name: open.file.replace(/(\.curves)?\.[a-z0-9]{2,5}$/i, ''),
+    };
   };
 
   /** The beats that get a pose, from the one at the playhead on. */

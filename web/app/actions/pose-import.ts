@@ -1,7 +1,7 @@
 /** Taking a pose from an animation file: the file is read, a frame chosen, and that becomes a pose like any other. */
 import { poseOfFrame } from '../../core/formats/pose-sequence';
 import { breathe, messageOf, type Context } from '../context';
-import { isPoseList, readPoseClips } from '../pose-reader';
+import { isJson, jsonKindOf, readPoseClips } from '../pose-reader';
 import type { LibraryActions } from './library';
 
 interface Keys {
@@ -20,18 +20,20 @@ export function poseImportActions(context: Context, library: LibraryActions, key
     const open = state.poseImport.value;
     if (!open) return null;
     const clip = open.clips[open.clip];
-    const plain = open.file.replace(/\.[a-z0-9]{2,5}$/i, '');
+    const plain = open.file.replace(/(\.curves)?\.[a-z0-9]{2,5}$/i, '');
     return { rotations: poseOfFrame(clip, open.frame), name: clip.frames > 1 ? `${plain} ${open.frame + 1}` : plain };
   };
 
   return {
     /** Opens a file of poses or of an animation; a wrong file becomes a message and changes nothing. */
     async importPoseFile(file: File): Promise<void> {
-      if (isPoseList(file)) {
-        await library.importOwnPoses(file);
-        return;
-      }
       const turn = (reading += 1);
+      if (isJson(file)) {
+        const kind = await jsonKindOf(file).catch(() => null);
+        if (turn !== reading) return;
+        // What is none of ours gets the words of the poses.
+        if (kind === null || kind === 'poses') return library.importOwnPoses(file);
+      }
       state.poseImportJob.value = file.name;
       try {
         // The message is painted before the reading begins.

@@ -16,11 +16,13 @@ export interface PoseSequence {
   frames: number;
   /** Local rotations, frames x 24 x 4 (x y z w); joint 0 is the world orientation, Y up. */
   quaternions: Float32Array;
+  /** Frames that the file points out, its key poses. */
+  marks?: readonly number[];
 }
 
 /** What an animation file held. */
 export interface PoseClips {
-  kind: 'BVH' | 'SMPL' | 'glTF' | 'VRM';
+  kind: 'BVH' | 'SMPL' | 'glTF' | 'VRM' | 'Posebeat';
   /** At least one. */
   clips: PoseSequence[];
 }
@@ -110,11 +112,17 @@ function speeds({ frames, fps, quaternions }: PoseSequence): Float32Array {
 }
 
 /**
- * Frames worth a look: where the body is held, that is the lowest minima of its speed, well apart in time.
+ * Frames worth a look: those that the file points out, else where the body is held, that is the lowest minima of its speed, well apart
+ * in time.
  * @returns at most `count` frame numbers, ascending
  */
 export function suggestFrames(sequence: PoseSequence, count: number): number[] {
-  const { frames, fps } = sequence;
+  const { frames, fps, marks } = sequence;
+  if (marks)
+    return evenly(
+      [...new Set(marks)].sort((a, b) => a - b),
+      count,
+    );
   if (frames <= count) return Array.from({ length: frames }, (_, frame) => frame);
   const raw = speeds(sequence);
   // A tenth of a second to either side, so that the noise of the recording makes no minima.
@@ -138,6 +146,12 @@ export function suggestFrames(sequence: PoseSequence, count: number): number[] {
   // Too few holds: evenly spread frames fill up.
   take(Array.from({ length: count }, (_, i) => Math.round((i * (frames - 1)) / (count - 1))));
   return chosen.sort((a, b) => a - b);
+}
+
+/** As many of a list, spread evenly over it. */
+function evenly(list: readonly number[], count: number): number[] {
+  if (list.length <= count) return [...list];
+  return Array.from({ length: count }, (_, i) => list[Math.round((i * (list.length - 1)) / (count - 1))]);
 }
 
 /** Checks that every number is finite. */

@@ -94,7 +94,7 @@ function Actions() {
         class="secondary"
         disabled={poseImportJob.value !== null}
         onClick={() => chooseFile(store, POSE_FILES, (_, file) => void store.importPoseFile(file))}
-        title="A pose from a BVH, SMPL npz, GLB or VRM file, or a file of saved poses"
+        title="A pose or a dance from a BVH, SMPL npz, GLB, VRM or JSON file, or a file of saved poses"
       >
         <Icon name="upload" />
         {poseImportJob.value === null ? 'Import' : 'Reading…'}

@@ -101,7 +101,7 @@ export function ImportPanel() {
       )}
       {many && (
         <div>
-          <h4>Held moments</h4>
+          <h4>{clip.marks ? 'Its key poses' : 'Held moments'}</h4>
           <ul class="moments">
             {suggestions.value.map(({ frame, rotations }) => (
               <li key={frame}>
