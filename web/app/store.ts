@@ -16,6 +16,7 @@ import { keyActions } from './actions/keys';
 import { layoutActions } from './actions/layout';
 import { libraryActions } from './actions/library';
 import { motionImportActions } from './actions/motion-import';
+import { lookActions } from './actions/look';
 import { overlayActions } from './actions/overlays';
 import { playbackActions } from './actions/playback';
 import { poseActions } from './actions/pose';
@@ -183,6 +184,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...view,
     ...cameraActions(context),
     ...tourActions(context),
+    ...lookActions(context),
     ...overlayActions(context),
     ...layoutActions(context),
     undo,

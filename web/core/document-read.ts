@@ -20,6 +20,7 @@ import {
   engineSchema,
   gridSchema,
   keyPoseSchema,
+  lookSchema,
   seedClipSchema,
   songSchema,
   takeRangeSchema,
@@ -66,6 +67,7 @@ export function parseDocument(input: unknown): { document: ProjectDocument; repa
       ...ownSeedPart(raw, repairs),
       ...curvePart(raw, repairs),
       avatar: repairAvatar(raw.avatar, repairs),
+      ...lookPart(raw, repairs),
       camera: repairPart(cameraSchema, raw.camera, 'The camera was damaged: the opening view is shown.', repairs),
     },
     repairs,
@@ -77,6 +79,17 @@ function ownSeedPart(raw: Record<string, unknown>, repairs: string[]): Pick<Proj
   const message = 'The starting clip of your own was damaged and left out.';
   const ownSeed = repairPart(seedClipSchema, raw.ownSeed, message, repairs);
   return ownSeed ? { ownSeed } : {};
+}
+
+/** What the figure wears; projects that do not say stay so. */
+function lookPart(raw: Record<string, unknown>, repairs: string[]): Pick<ProjectDocument, 'look'> {
+  const look = repairPart(
+    lookSchema,
+    raw.look,
+    'The figure’s look was damaged: it wears what it wears at first.',
+    repairs,
+  );
+  return look ? { look } : {};
 }
 
 /** The engine and the edited curves; projects without them stay without. */

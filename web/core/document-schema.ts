@@ -1,5 +1,6 @@
 /** The parts of a project document, each checked on its own so that one damaged part does not cost the others. */
 import * as v from 'valibot';
+import { FIGURE_COLOURS, FIGURE_STYLES } from './figure-look';
 import spec from './spec.json';
 
 /** Numbers in a pose: three per joint. */
@@ -94,6 +95,11 @@ export const seedClipSchema = v.pipe(
   }),
   v.check(({ beats, rate, poses, root }) => poses.length === beats * rate && root.length === beats * rate),
 );
+/** What our own figure wears. */
+export const lookSchema = v.object({
+  style: v.picklist(FIGURE_STYLES),
+  colours: v.picklist(FIGURE_COLOURS.map(({ id }) => id)),
+});
 /** What makes a dance. */
 export const engineSchema = v.picklist(['light', 'curves']);
 const anchor = v.union([id, v.pipe(v.number(), v.minValue(-100_000), v.maxValue(100_000))]);

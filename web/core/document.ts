@@ -2,6 +2,7 @@
 import * as v from 'valibot';
 import type { CurveEdit } from './curves-edit';
 import { rotationsSchema, unit } from './document-schema';
+import type { FigureLook } from './figure-look';
 import { FIRST_TAKE } from './filler';
 import spec from './spec.json';
 import type { BeatGrid, KeyPose, SeedClip } from './types';
@@ -87,6 +88,8 @@ export interface ProjectDocument {
   curveEdits?: readonly CurveEdit[];
   /** Id of the figure that dances. */
   avatar: string;
+  /** What our own figure wears; missing = `DEFAULT_LOOK`. */
+  look?: FigureLook;
   /** null = the opening view. Not part of undo: `History.amend`. */
   camera: CameraView | null;
 }

@@ -1,4 +1,5 @@
 import { Group } from 'three';
+import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
 import type { FramePose } from '../core/types';
 import { Figure } from './figure';
 import type { FigureAsset } from './figure-asset';
@@ -17,6 +18,7 @@ export class Beside {
   /** Where it dances; null while there is none. */
   root: readonly [number, number] | null = null;
   private figure: Figure | null = null;
+  private look: Readonly<FigureLook> = DEFAULT_LOOK;
 
   /** Shows a pose, or nobody. */
   set(asset: FigureAsset | null, pose: FramePose | null): void {
@@ -25,9 +27,16 @@ export class Beside {
     if (!pose || !asset) return;
     if (!this.figure) {
       this.figure = new Figure(asset);
+      this.figure.wear(this.look);
       this.group.add(this.figure.mesh);
     }
     this.figure.show(aside(pose, -APART));
+  }
+
+  /** Dresses the second dancer, also one who is yet to come. */
+  wear(look: Readonly<FigureLook>): void {
+    this.look = look;
+    this.figure?.wear(look);
   }
 
   /** Frees the dancer. */

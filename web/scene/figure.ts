@@ -11,9 +11,11 @@ import {
   Sphere,
   Vector3,
 } from 'three';
+import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
 import type { FramePose } from '../core/types';
 import type { FigureAsset } from './figure-asset';
-import { createFigureMaterial } from './figure-material';
+import { createFigureMaterial, recolour } from './figure-material';
+import { mannequin } from './mannequin';
 import { SKIN_BONES, SkinPose } from './skin-bones';
 
 /** A skeleton whose matrices come from {@link SkinPose} instead of a tree of three.js bones. */
@@ -62,20 +64,24 @@ export class Figure {
   private readonly bounds = new Sphere(new Vector3(), 1.6);
   private readonly skeleton = new FigureSkeleton(this.pose);
 
+  private asset: FigureAsset;
+  private look: Readonly<FigureLook> = DEFAULT_LOOK;
+
   /**
-   * @param asset shared by all figures
+   * @param body shared by all figures
    * @param level of detail, 0 the finest
    * @param material freed with the figure
    */
   constructor(
-    private readonly asset: FigureAsset,
+    private readonly body: FigureAsset,
     private level = 0,
     material: Material = createFigureMaterial(),
   ) {
-    this.mesh = new SkinnedMesh(ownRange(asset.geometry), material);
+    this.asset = body;
+    this.mesh = new SkinnedMesh(ownRange(body.geometry), material);
     this.draw(level);
     // A shadow needs no fingers: it is drawn with the coarsest triangles.
-    this.mesh.onBeforeShadow = () => this.draw(asset.levels.length - 1);
+    this.mesh.onBeforeShadow = () => this.draw(this.asset.levels.length - 1);
     this.mesh.onAfterShadow = () => this.draw(this.level);
     this.mesh.bind(this.skeleton, new Matrix4());
     this.mesh.frustumCulled = false;
@@ -83,6 +89,24 @@ export class Figure {
     this.mesh.boundingSphere = this.bounds;
     this.mesh.castShadow = true;
     this.mesh.receiveShadow = true;
+  }
+
+  /** Dresses a figure that has its own material, not a ghost. Another style takes another shader, other colours cost nothing. */
+  wear(look: Readonly<FigureLook>): void {
+    if (look.style === this.look.style) {
+      if (look.colours !== this.look.colours) recolour(this.mesh.material as Material, look);
+      this.look = look;
+      return;
+    }
+    this.look = look;
+    (this.mesh.material as Material).dispose();
+    this.mesh.material = createFigureMaterial(look);
+    const asset = look.style === 'mannequin' ? mannequin() : this.body;
+    if (asset === this.asset) return;
+    this.asset = asset;
+    this.mesh.geometry.dispose();
+    this.mesh.geometry = ownRange(asset.geometry);
+    this.draw(this.level);
   }
 
   /** Level of detail, 0 the finest. */

@@ -1,6 +1,7 @@
 /** The stage: the figure, its floor, lights and camera, and the loop that draws them. */
 import { Scene, WebGLRenderer } from 'three';
 import type { CameraView } from '../core/document';
+import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
 import type { FramePose, PoseTools } from '../core/types';
 import { JOINT_COUNT } from '../core/skeleton';
 import { Figure } from './figure';
@@ -34,6 +35,8 @@ export interface Stage {
   show(pose: FramePose): void;
   /** Draws a frame of another dance beside it, to the left; null = the dance is alone. */
   showBeside(pose: FramePose | null): void;
+  /** Dresses our own figure, and the second dancer like it. */
+  setLook(look: Readonly<FigureLook>): void;
   /** Calls back before each screen refresh, with performance.now(). */
   beforeFrame(callback: (now: number) => void): () => void;
   setMode(mode: 'dance' | 'pose'): void;
@@ -96,6 +99,7 @@ class WebGLStage implements Stage {
   private readonly path = new Path();
   private readonly bodyClicks: BodyClicks;
   private ghosts: readonly Ghost[] | null = null;
+  private look: Readonly<FigureLook> = DEFAULT_LOOK;
   private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
   private readonly governor = new QualityGovernor(Math.min(devicePixelRatio || 1, 2));
   private readonly callbacks = new Set<(now: number) => void>();
@@ -169,6 +173,13 @@ class WebGLStage implements Stage {
     this.beside.set(this.asset, pose);
     if (!pose !== alone) this.view.spread(pose ? 2 * APART : 0);
     if (this.mode === 'dance') this.draw();
+  }
+
+  setLook(look: Readonly<FigureLook>): void {
+    this.look = look;
+    this.figure?.wear(look);
+    this.beside.wear(look);
+    this.dirty = true;
   }
 
   beforeFrame(callback: (now: number) => void): () => void {
@@ -294,6 +305,7 @@ class WebGLStage implements Stage {
     const asset = await loadFigure();
     if (this.disposed) return;
     const figure = new Figure(asset);
+    figure.wear(this.look);
     this.scene.add(figure.mesh);
     figure.show(this.last);
     // Shaders are built beside the page's own work; nothing is drawn until they are there.

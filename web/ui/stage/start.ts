@@ -1,6 +1,7 @@
 /** The 3D stage on the page: it shows what the store's clock says, and tells the store what is posed on it. */
-import { effect } from '@preact/signals';
+import { computed, effect } from '@preact/signals';
 import type { Store } from '../../app/store';
+import { DEFAULT_LOOK } from '../../core/figure-look';
 import { framePose, type MutableFramePose } from '../../core/motion';
 import type { Motion } from '../../core/types';
 import type { Stage } from '../../scene/stage';
@@ -55,6 +56,8 @@ export async function startStage(
 
   const opened = stage;
   onOpen(opened);
+  // Its own signal: the document changes with every edit, the look seldom.
+  const look = computed(() => state.document.value.look ?? DEFAULT_LOOK);
   const undo: (() => void)[] = [opened.beforeFrame(onFrame)];
   let own: readonly number[] | null = null;
   undo.push(
@@ -84,6 +87,7 @@ export async function startStage(
       }
       opened.selectJoint(draft.joint);
     }),
+    effect(() => opened.setLook(look.value)),
     effect(() => opened.setPoseTools(state.poseTools.value)),
     bindOverlays(opened, store),
   );
