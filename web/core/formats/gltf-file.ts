@@ -13,6 +13,8 @@ const node = v.object({
   rotation: v.optional(v.pipe(numbers, v.length(4))),
   scale: v.optional(v.pipe(numbers, v.length(3))),
   matrix: v.optional(v.pipe(numbers, v.length(16))),
+  mesh: v.optional(index),
+  skin: v.optional(index),
 });
 const channel = v.object({
   sampler: index,
@@ -43,6 +45,8 @@ const schema = v.object({
   asset: v.object({ version: v.string() }),
   nodes: v.pipe(v.optional(v.array(node), []), v.maxLength(20_000)),
   skins: v.optional(v.array(v.object({ joints: v.array(index), inverseBindMatrices: v.optional(index) })), []),
+  /** Only avatars look at them, and get on without. */
+  meshes: v.optional(v.unknown()),
   animations: v.pipe(v.optional(v.array(animation), []), v.maxLength(1000)),
   accessors: v.optional(v.array(accessor), []),
   bufferViews: v.optional(v.array(bufferView), []),
@@ -86,7 +90,7 @@ const damaged = () => new Error('This glTF file is damaged or was not copied com
  * @throws Error with a sentence for the visitor
  */
 export function openGltf(bytes: Uint8Array): GltfFile {
-  const { text, binary } = chunks(bytes);
+  const { text, binary } = glbChunks(bytes);
   let raw: unknown;
   try {
     raw = JSON.parse(text);
@@ -113,7 +117,11 @@ export function openGltf(bytes: Uint8Array): GltfFile {
   return { json, numbers: (at) => readAccessor(json, buffer, at) };
 }
 
-function chunks(bytes: Uint8Array): { text: string; binary: Uint8Array | null } {
+/**
+ * The text and the binary part of a .glb file; a .gltf file is all text.
+ * @throws Error when it is cut off
+ */
+export function glbChunks(bytes: Uint8Array): { text: string; binary: Uint8Array | null } {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const decode = (part: Uint8Array) => new TextDecoder().decode(part);
   if (bytes.length < 20 || view.getUint32(0, true) !== GLB) return { text: decode(bytes), binary: null };

@@ -32,7 +32,7 @@ export function plainName(name: string): { side: Side | null; stem: string } {
   let text = name
     .replace(/^.*[:|]/, '')
     .replace(/^mixamorig\d*_?/i, '')
-    .replace(/^(j_bip_(c_)?|bip\d*[ _]|def[-_]|org[-_]|m_avg_|avg_)/i, '');
+    .replace(/^(j_bip_(c_)?|bip\d*[ _]|def[-_]|org[-_]|m_avg_|avg_|cc_base_|valvebiped[._])/i, '');
   let side: Side | null = null;
   const word = /left|right/i.exec(text);
   const alone = /(?:^|[\s_.-])([lr])(?=$|[\s_.-])/i.exec(text);
@@ -68,11 +68,10 @@ function stemsOf(part: Part, has: ReadonlySet<string>): readonly string[] {
 }
 
 /**
- * Finds our 24 joints in a skeleton.
- * @returns for each of our joints the index of theirs, -1 where they have none
- * @throws Error naming what is missing when it is no human body
+ * The joints of arms, legs, neck and head that a skeleton's names tell, and its pelvis where one is called so.
+ * @returns for each of our joints the index of theirs, -1 where no name tells
  */
-export function mapHumanoid({ names, parents }: NamedSkeleton): number[] {
+export function jointsByName(names: readonly string[]): number[] {
   const map = new Array<number>(JOINT_COUNT).fill(-1);
   const plain = names.map(plainName);
   const find = (side: Side | null, stems: readonly string[], taken: ReadonlySet<number> = new Set()): number => {
@@ -92,6 +91,19 @@ export function mapHumanoid({ names, parents }: NamedSkeleton): number[] {
       map[jointIndex(`${side}_${part}`)] = at;
     }
   }
+  map[jointIndex('pelvis')] = find(null, ['hips', 'pelvis', 'hip']);
+  map[jointIndex('neck')] = find(null, ['neck', 'neck1', 'neck01', 'neck0']);
+  map[jointIndex('head')] = find(null, ['head']);
+  return map;
+}
+
+/**
+ * Finds our 24 joints in a skeleton.
+ * @returns for each of our joints the index of theirs, -1 where they have none
+ * @throws Error naming what is missing when it is no human body
+ */
+export function mapHumanoid({ names, parents }: NamedSkeleton): number[] {
+  const map = jointsByName(names);
   const missing = (['left', 'right'] as const).flatMap((side) =>
     NEEDED.filter((part) => map[jointIndex(`${side}_${part}`)] < 0).map((part) => `${side} ${part}`),
   );
@@ -112,12 +124,9 @@ export function mapHumanoid({ names, parents }: NamedSkeleton): number[] {
     const others = new Set(above(b));
     return above(a).find((joint) => others.has(joint)) ?? -1;
   };
-  const named = find(null, ['hips', 'pelvis', 'hip']);
-  const pelvis = named >= 0 ? named : common(parents[at('left_hip')], parents[at('right_hip')]);
+  const pelvis = at('pelvis') >= 0 ? at('pelvis') : common(parents[at('left_hip')], parents[at('right_hip')]);
   if (pelvis < 0) throw new Error('The legs of this skeleton hang together nowhere: Posebeat cannot read it.');
   map[jointIndex('pelvis')] = pelvis;
-  map[jointIndex('neck')] = find(null, ['neck', 'neck1', 'neck01', 'neck0']);
-  map[jointIndex('head')] = find(null, ['head']);
 
   // The back is told by its place, not by its names, which differ most: what the arms hang on and the legs do not.
   const legs = new Set([...above(at('left_hip')), ...above(at('right_hip')), pelvis]);

@@ -38,9 +38,9 @@ const NEXT: Readonly<Record<string, string>> = {
   right_wrist: 'right_hand',
 };
 /** Bones whose rest direction is a matter of the rest pose. Of the others it is mostly a habit of the rig: where a joint was put. */
-const LIMB = /_(hip|knee|shoulder|elbow)$/;
+export const LIMB = /_(hip|knee|shoulder|elbow)$/;
 /** Cosine of 40 degrees: further off than that, other bones were posed too. */
-const HABIT = Math.cos((40 * Math.PI) / 180);
+export const HABIT = Math.cos((40 * Math.PI) / 180);
 /** A rest pose that is turned by less than 20 degrees from an axis stands on that axis. */
 const SNAP = Math.cos((20 * Math.PI) / 180);
 
@@ -58,7 +58,7 @@ function unit(v: Vector): Vector {
 }
 
 /** Left, up and forward of a body, as a rotation from ours (left = +X, up = +Y, forward = +Z). */
-function bodyFrame(at: (joint: string) => Vector, top: string): number[] {
+export function bodyFrame(at: (joint: string) => Vector, top: string): number[] {
   const middle = (a: Vector, b: Vector): Vector => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2];
   const up = unit(minus(at(top), middle(at('left_hip'), at('right_hip'))));
   const across = minus(at('left_hip'), at('right_hip'));
@@ -70,7 +70,7 @@ function bodyFrame(at: (joint: string) => Vector, top: string): number[] {
 }
 
 /** The nearest turn by right angles, where one is near. */
-function snapped(q: number[]): number[] {
+export function snapped(q: number[]): number[] {
   const [left, up] = [axisOf(rotateVector(q, [1, 0, 0]), SNAP), axisOf(rotateVector(q, [0, 1, 0]), SNAP)];
   if (!left || !up || dot(left, up) !== 0) return q;
   const forward = cross(left, up);
