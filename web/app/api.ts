@@ -38,7 +38,7 @@ export interface PosebeatApi {
   /**
    * A file. `bvh`, `glb`, `fbx`, `npz` (SMPL: AIST++ and AMASS names) and `json` hold the dance on stage; `project` is JSON text, or with
    * `song: true` a zip with the song's own bytes inside (both open again as `.posebeat`). `curves` is the dance of engine "curves": our
-   * JSON, or with `as: 'glb'` an animation of cubic splines.
+   * JSON, or with `as: 'glb'` an animation of cubic splines (`figure: true`: with our figure).
    */
   exportAs(format: ExportFormat, options?: MotionFileOptions & { song?: boolean; as?: 'json' | 'glb' }): Promise<Blob>;
   /**
@@ -103,7 +103,7 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       if ((MOTION_FORMATS as readonly string[]).includes(format)) {
         return store.exportMotion(format as MotionFormat, options);
       }
-      if (format === 'curves') return store.exportCurves(options.as);
+      if (format === 'curves') return store.exportCurves(options.as, { figure: options.figure === true });
       throw new Error(
         `There is no export format "${String(format)}": use bvh, glb, fbx, npz, json, curves or project.`,
       );

@@ -24,6 +24,7 @@ import { writeCurvesJson } from '../../core/formats/curves-json';
 import { messageOf, type Context } from '../context';
 import type { DanceCache } from '../dance-cache';
 import { fileName, saveFile } from '../download';
+import { loadGlbFigure } from './export';
 import { originOf } from '../motion-origin';
 import type { Dance, State } from '../state';
 import type { DanceActions } from './dance';
@@ -197,25 +198,27 @@ export function curveActions(
       context.announce('The curve is as it was generated.');
     },
     /**
-     * The curves of the dance on stage, changes included, as a file: our JSON, or a GLB animation of cubic splines.
+     * The curves of the dance on stage, changes included, as a file: our JSON, or a GLB animation of cubic splines, with our figure where
+     * it is wished.
      * @throws Error when the dance on stage has no curves
      */
-    async exportCurves(as: 'json' | 'glb' = 'json'): Promise<Blob> {
+    async exportCurves(as: 'json' | 'glb' = 'json', { figure = false } = {}): Promise<Blob> {
       if (as !== 'json' && as !== 'glb') throw new Error('as must be "json" or "glb".');
-      const curves = curvesOnStage(state)?.shown;
-      if (!curves) throw new Error('This dance has no curves: generate it with the engine "curves" first.');
+      const dance = state.onStage.value;
+      if (!dance?.curves) throw new Error('This dance has no curves: generate it with the engine "curves" first.');
+      const curves = applyEdits(dance.curves, dance.curveEdits ?? NO_EDITS);
       const name = state.document.value.song?.name ?? 'dance';
-      const origin = await originOf(state, state.dance.value!);
-      return as === 'json'
-        ? new Blob([writeCurvesJson(curves, origin)], { type: 'application/json' })
-        : new Blob([writeCurvesGlb(curves, name, origin)], { type: 'model/gltf-binary' });
+      const origin = await originOf(state, dance);
+      if (as === 'json') return new Blob([writeCurvesJson(curves, origin)], { type: 'application/json' });
+      const body = figure ? await bodyOf(dance.motion) : {};
+      return new Blob([writeCurvesGlb(curves, name, { origin, ...body })], { type: 'model/gltf-binary' });
     },
 
     /** Saves the curves as a file for the visitor to keep; what is wrong becomes a notice. */
-    async saveCurves(as: 'json' | 'glb'): Promise<void> {
+    async saveCurves(as: 'json' | 'glb', options: { figure?: boolean } = {}): Promise<void> {
       try {
-        const blob = await actions.exportCurves(as);
-        const name = fileName(state.document.value.song?.name ?? 'dance', as === 'json' ? 'curves.json' : 'glb');
+        const blob = await actions.exportCurves(as, options);
+        const name = fileName(state.document.value.song?.name ?? 'dance', `curves.${as}`);
         saveFile(blob, name);
         context.announce(`${name} is saved.`);
       } catch (error) {
@@ -228,6 +231,12 @@ export function curveActions(
 
 /** Actions on the curves of the dance. */
 export type CurveActions = ReturnType<typeof curveActions>;
+
+/** Our figure for a file, and how its helper bones move in a dance: frame by frame, for nobody edits them. */
+async function bodyOf(motion: Motion) {
+  const [figure, { helperSamplers }] = await Promise.all([loadGlbFigure(), import('../../scene/skin-samplers')]);
+  return { figure, helpers: helperSamplers(motion) };
+}
 
 /** An edit with some of it changed; what says nothing any more is left out, so that equal edits are equal. */
 function merged(edit: CurveEdit, change: CurveChange): CurveEdit {

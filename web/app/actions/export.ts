@@ -36,7 +36,7 @@ export interface Frames {
 let figure: Promise<GlbFigure> | undefined;
 
 /** Our figure for GLB files, made once. */
-function loadGlbFigure(): Promise<GlbFigure> {
+export function loadGlbFigure(): Promise<GlbFigure> {
   figure ??= (async () => {
     const [{ loadFigure }, { figureForGlb }] = await Promise.all([
       import('../../scene/figure-asset'),

@@ -5,13 +5,14 @@ import { hermite } from '../interpolate';
 import { REST } from '../rest';
 import { JOINT_COUNT, PARENTS } from '../skeleton';
 import { writeGlb, type GlbFigure, type GlbSampler } from './glb-write';
+import type { MotionOrigin } from './motion-origin';
 
 /**
  * Blender's importer keeps the keys and drops the tangents: it lays its own smooth spline through the keys. Where that would carry a
  * joint farther off than this, metres, a key more is put on the curve. Errors of a chain of joints add up, so it is well below a
  * centimetre.
  */
-const LEEWAY = 0.003;
+const LEEWAY = 0.004;
 /** Rounds of looking again after keys were put in. */
 const ROUNDS = 4;
 /** Where between two keys it is looked, shares of the way. */
@@ -54,13 +55,31 @@ export function curveSamplers(curves: CurveDance): GlbSampler[] {
   });
 }
 
+/** What a file of curves may hold beside them. */
+export interface CurvesGlbExtras {
+  /** Where the dance comes from. */
+  origin?: MotionOrigin | null;
+  /** Missing: the skeleton alone. */
+  figure?: GlbFigure;
+  /** How the figure's helper bones move. */
+  helpers?: readonly GlbSampler[];
+}
+
 /**
  * A GLB file of the curves.
  * @param name of the animation
- * @param figure missing: the skeleton alone
  */
-export function writeCurvesGlb(curves: CurveDance, name: string, figure?: GlbFigure): Uint8Array<ArrayBuffer> {
-  return writeGlb({ name, samplers: curveSamplers(curves), ...(figure ? { figure } : {}) });
+export function writeCurvesGlb(
+  curves: CurveDance,
+  name: string,
+  { origin, figure, helpers = [] }: CurvesGlbExtras = {},
+): Uint8Array<ArrayBuffer> {
+  return writeGlb({
+    name,
+    samplers: [...curveSamplers(curves), ...helpers],
+    ...(figure ? { figure } : {}),
+    ...(origin ? { extras: { posebeat: origin } } : {}),
+  });
 }
 
 /** Puts keys on the curve of a track, in the middle between two others, until a spline through all of them is near it everywhere. */

@@ -2,18 +2,20 @@ import { signal } from '@preact/signals';
 import type { MotionFileOptions } from '../../app/actions/export';
 import { estimateBytes, FRAME_RATES, type MotionFormat } from '../../app/motion-formats';
 import { clockTime } from '../../app/snapping';
+import type { CurveDance } from '../../core/curves';
 import spec from '../../core/spec.json';
 import { Dialog } from '../Dialog';
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
-import { FORMAT_CARDS, sizeText, type FormatCard } from './formats';
+import { curveBytes, FORMAT_CARDS, sizeText, type CardFormat, type FormatCard } from './formats';
 import { PARTS, partsNow, type Part } from './parts';
 import { Segments } from './Segments';
 
 /** What was chosen last; it stays while the page is open. */
 const choice = {
-  format: signal<MotionFormat>('glb'),
+  format: signal<CardFormat>('glb'),
+  curves: signal<'glb' | 'json'>('glb'),
   fps: signal<number>(spec.fps),
   units: signal<'m' | 'cm'>('cm'),
   figure: signal(true),
@@ -68,7 +70,6 @@ function Contents() {
   const last = Math.max(0, frames - 1) / dance.motion.fps;
   const fps = choice.fps.value;
   const count = Math.floor(last * fps + 1e-6) + 1;
-  const bytes = estimateBytes(card.format, count, choice.figure.value);
   const options: MotionFileOptions = { fps, units: choice.units.value, figure: choice.figure.value, range: part };
   const name = song.value?.reference.name ?? document.value.song?.name;
   return (
@@ -92,16 +93,59 @@ function Contents() {
         Save as a video with the song instead
       </button>
       <Options card={card} parts={parts} part={part} />
-      <div class="export-foot">
-        <p>
-          <strong class="tabular">{clockTime(frames / dance.motion.fps)}</strong>
-          <span class="hint tabular">
-            {count} frames, about {sizeText(bytes)}
-          </span>
-        </p>
-        <SaveButton format={card.format} options={options} />
-      </div>
+      {card.format === 'curves' ? (
+        <CurvesFoot curves={dance.curves} frames={dance.motion.frames} />
+      ) : (
+        <div class="export-foot">
+          <p>
+            <strong class="tabular">{clockTime(frames / dance.motion.fps)}</strong>
+            <span class="hint tabular">
+              {count} frames, about {sizeText(estimateBytes(card.format, count, choice.figure.value))}
+            </span>
+          </p>
+          <SaveButton format={card.format} options={options} />
+        </div>
+      )}
     </>
+  );
+}
+
+/** Saves the curves; where the dance is one of frames, says how to get some. */
+function CurvesFoot({ curves, frames }: { curves: CurveDance | undefined; frames: number }) {
+  const store = useStore();
+  const as = choice.curves.value;
+  const figure = as === 'glb' && choice.figure.value;
+  if (!curves)
+    return (
+      <div class="export-foot">
+        <p class="hint">This dance was drawn frame by frame. Danced as curves it keeps your key poses.</p>
+        <button
+          type="button"
+          class="secondary"
+          onClick={() => {
+            store.toggleExport(false);
+            store.setEngine('curves');
+            void store.generateForPage();
+          }}
+        >
+          <Icon name="sparkles" />
+          Dance it as curves
+        </button>
+      </div>
+    );
+  return (
+    <div class="export-foot">
+      <p>
+        <strong class="tabular">{clockTime(curves.duration)}</strong>
+        <span class="hint tabular">
+          {curves.times.length} keys, about {sizeText(curveBytes(as, curves.times.length, figure ? frames : 0))}
+        </span>
+      </p>
+      <button type="button" class="primary motion-tone" onClick={() => void store.saveCurves(as, { figure })}>
+        <Icon name="download" />
+        Save .{as}
+      </button>
+    </div>
   );
 }
 
@@ -129,9 +173,22 @@ function FormatChoice({ card }: { card: FormatCard }) {
 }
 
 function Options({ card, parts, part }: { card: FormatCard; parts: readonly Part[]; part: Part }) {
+  const isCurves = card.format === 'curves';
   return (
     <div class="export-options">
-      {card.choices.includes('figure') && (
+      {card.choices.includes('curves') && (
+        <Segments
+          legend="File"
+          name="export-curves"
+          value={choice.curves.value}
+          options={[
+            { value: 'glb', label: 'GLB', title: 'A cubic spline for every joint' },
+            { value: 'json', label: 'JSON', title: 'Knots, tension, continuity and bias, for programs of your own' },
+          ]}
+          onChange={(value) => (choice.curves.value = value)}
+        />
+      )}
+      {card.choices.includes('figure') && (!isCurves || choice.curves.value === 'glb') && (
         <Segments
           legend="Content"
           name="export-figure"
@@ -155,18 +212,20 @@ function Options({ card, parts, part }: { card: FormatCard; parts: readonly Part
           onChange={(value) => (choice.units.value = value)}
         />
       )}
-      <Segments
-        legend="Frames per second"
-        name="export-fps"
-        value={choice.fps.value}
-        options={FRAME_RATES.map((value) => ({
-          value: value as number,
-          label: String(value),
-          ...(value === spec.fps ? { title: 'As the dance is made' } : {}),
-        }))}
-        onChange={(value) => (choice.fps.value = value)}
-      />
-      {parts.length > 1 && (
+      {!isCurves && (
+        <Segments
+          legend="Frames per second"
+          name="export-fps"
+          value={choice.fps.value}
+          options={FRAME_RATES.map((value) => ({
+            value: value as number,
+            label: String(value),
+            ...(value === spec.fps ? { title: 'As the dance is made' } : {}),
+          }))}
+          onChange={(value) => (choice.fps.value = value)}
+        />
+      )}
+      {!isCurves && parts.length > 1 && (
         <Segments
           legend="Part"
           name="export-part"

@@ -1,16 +1,19 @@
 /** The formats of the export panel: what each is for, and what can be chosen. */
-import type { MotionFormat } from '../../app/motion-formats';
+import { estimateBytes, type MotionFormat } from '../../app/motion-formats';
+
+/** Motion files, frame by frame, and the curves of a dance that has them. */
+export type CardFormat = MotionFormat | 'curves';
 
 /** A card of the panel. */
 export interface FormatCard {
-  format: MotionFormat;
+  format: CardFormat;
   name: string;
   /** Which program opens it. */
   text: string;
   /** A word to what is chosen below. */
   hint?: string;
-  /** Choices beside frames per second and the part. */
-  choices: readonly ('units' | 'figure')[];
+  /** What can be chosen; frames per second and the part wherever there are frames. */
+  choices: readonly ('units' | 'figure' | 'curves')[];
 }
 
 /** In the order of the panel. */
@@ -48,7 +51,23 @@ export const FORMAT_CARDS: readonly FormatCard[] = [
     text: 'Rotations, places, beats and key poses as plain text, for programs of your own.',
     choices: [],
   },
+  {
+    format: 'curves',
+    name: 'Curves',
+    text: 'Keys at your key poses with curves between them, to go on editing in Blender, Unity or Unreal.',
+    choices: ['curves', 'figure'],
+  },
 ];
+
+/** About how many bytes a file of curves has, measured on dances of ours; with our figure, the frames of its helper bones. */
+export function curveBytes(as: 'glb' | 'json', keys: number, figureFrames: number): number {
+  if (as === 'json') return 3000 + 5300 * keys;
+  return (
+    8000 +
+    3700 * keys +
+    (figureFrames > 0 ? estimateBytes('glb', figureFrames, true) - estimateBytes('glb', figureFrames, false) : 0)
+  );
+}
 
 /** Bytes as people read them. */
 export function sizeText(bytes: number): string {
