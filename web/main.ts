@@ -2,6 +2,7 @@
 import { h, render } from 'preact';
 import { createApi } from './app/api';
 import { createAssets } from './app/assets';
+import { noAvatarStore } from './app/avatar-store';
 import { answerMessages, embedWish, noStorage, type Frame } from './app/embed';
 import { createEngine } from './app/engine';
 import { followAddress } from './app/link-address';
@@ -33,6 +34,7 @@ import './style-project.css';
 import './style-export.css';
 import './style-video.css';
 import './style-share.css';
+import './style-avatar.css';
 import './style-phone.css';
 import './style-contrast.css';
 
@@ -51,6 +53,7 @@ const store = createStore(
     storage: tabs ? createStorage('posebeat', () => tabs.writes.value && !store.isGuest.value) : noStorage(),
     tabs,
     assets: createAssets(document.baseURI),
+    avatarStore: embedded ? noAvatarStore() : undefined,
     forcedBackend,
   },
   createReporter(),
@@ -73,6 +76,7 @@ async function openWhole(): Promise<void> {
   // Another tab may have saved some.
   window.addEventListener('focus', () => void store.loadOwnPoses());
   void store.countAside();
+  void store.restoreAvatar();
   followAddress(store, window);
   render(h(App, { store, thumbnails }), document.getElementById('app')!);
   // Pictures wait until the stage has had its first frames.

@@ -2,6 +2,7 @@
 import spec from '../core/spec.json';
 import { motionToAxisAngle } from '../core/motion';
 import type { ProjectDocument } from '../core/document';
+import type { SetAvatarOptions } from './actions/avatar';
 import type { GenerateCall, GenerateSummary } from './actions/dance';
 import type { MotionFileOptions } from './actions/export';
 import { MOTION_FORMATS, type MotionFormat } from './motion-formats';
@@ -47,6 +48,13 @@ export interface PosebeatApi {
    * stops an earlier one. Rejects where there is no dance or no encoder; with an AbortError when `signal` fires.
    */
   exportVideo(options?: VideoCallOptions): Promise<Blob>;
+  /**
+   * Lets a character of one's own dance in the place of the figure: a VRM or humanoid GLB file; null = the figure again. It is kept in
+   * this browser, not in the project. Rejects when bones cannot be told: `bones` then says which node is which joint. Height in metres.
+   */
+  setAvatar(file: File | Blob | null, options?: SetAvatarOptions): Promise<{ name: string; height: number } | null>;
+  /** The character on stage, and where our 24 joints are in its body now: 24 x 3 metres, floor at y = 0; null = the figure dances. */
+  avatar(): { name: string; height: number; joints: Float32Array } | null;
   /** The project as an address: opening it shows the same dance. Rejects when it would be too long for one. */
   shareLink(): Promise<string>;
   /** A copy of the project document. */
@@ -109,6 +117,11 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       );
     },
     exportVideo: async (options = {}) => store.exportVideo(options),
+    setAvatar: async (file, options) => store.setAvatar(file, options),
+    avatar() {
+      const shown = state.avatar.value;
+      return shown && { name: shown.name, height: shown.figure.height, joints: shown.figure.pose.joints.slice() };
+    },
     shareLink: async () => store.shareLink(location.href),
     document: () => structuredClone(state.document.value),
   };

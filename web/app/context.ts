@@ -6,6 +6,7 @@ import type { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
 import type { Backend } from '../workers/protocol';
 import type { Assets, Engine, Listener, Storage } from './ports';
+import type { AvatarStore } from './avatar-store';
 import type { MotionFileWriter } from './export-client';
 import type { PoseStore } from './pose-store';
 import type { Filmer } from '../video/video-client';
@@ -24,6 +25,8 @@ export interface Services {
   assets: Assets;
   /** Missing: the browser's own. */
   poseStore?: PoseStore;
+  /** Missing: the browser's own. */
+  avatarStore?: AvatarStore;
   /** Missing: in a worker. */
   writeMotionFile?: MotionFileWriter;
   /** Missing: in a worker. */

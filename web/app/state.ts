@@ -26,6 +26,7 @@ import { madeFrom, type DanceInputs } from './recipe';
 import type { OwnPose } from './pose-store';
 import type { DanceReport } from './report';
 import type { VideoJob } from './actions/video';
+import { createAvatarState } from './avatar-state';
 import { createSuggestState } from './suggester';
 
 /** The song at hand. Its parts arrive one after another: sound, waveform, first beats, everything. */
@@ -184,6 +185,7 @@ export function createState() {
   const frames = computed(() => Math.ceil(duration.value * spec.fps));
   return {
     ...createSuggestState(),
+    ...createAvatarState(),
     document,
     undoLabel: signal<string | null>(null),
     redoLabel: signal<string | null>(null),

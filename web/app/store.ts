@@ -5,6 +5,7 @@ import { createDocument, type ProjectDocument } from '../core/document';
 import { isLink } from '../core/formats/share-link';
 import { History } from '../core/history';
 import type { BeatGrid, Features } from '../core/types';
+import { avatarActions } from './actions/avatar';
 import { beatActions } from './actions/beats';
 import { cameraActions } from './actions/camera';
 import { compareActions } from './actions/compare';
@@ -177,6 +178,7 @@ export function createStore(services: Services, reporter: Reporter) {
     /** Opens the page; with the end of an address that is a link, with its dance. */
     start: (link = '') => project.start(isLink(link) ? () => share.openLink(link, true) : undefined),
     ...exportActions(context),
+    ...avatarActions(context, services.avatarStore),
     ...motionImportActions(context),
     ...videoActions(context),
     ...demo,

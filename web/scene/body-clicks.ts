@@ -1,6 +1,10 @@
 import { Raycaster, Vector2, type Camera } from 'three';
 import { pickBody } from './body-points';
-import type { Figure } from './figure';
+
+/** Whoever dances: world places and turns of the joints, 24 x 3 and 24 x 4. */
+interface Clickable {
+  pose: { joints: Float32Array; rotations: Float32Array };
+}
 
 /** How far a pointer may move and still click, CSS pixels. */
 const CLICK_SLACK = 6;
@@ -16,7 +20,7 @@ export class BodyClicks {
   constructor(
     private readonly element: HTMLElement,
     private readonly camera: Camera,
-    private readonly figure: () => Figure | null,
+    private readonly figure: () => Clickable | null,
   ) {
     const { signal } = this.abort;
     element.addEventListener('pointerdown', (event) => this.down(event), { signal });

@@ -23,7 +23,11 @@ export class FollowCamera {
   private touched = false;
   /** How far apart two dancers are, metres. */
   private room = 0;
+  /** Size of the dancer; our figure has 1. */
+  private size = 1;
   private moved = false;
+  /** What the hand began goes on: damping, or the way back to the opening view. */
+  private easing = false;
   /** Told when the camera rests where the user turned it to, or is back at the opening view. */
   settled: () => void = () => undefined;
   private settling: ReturnType<typeof setTimeout> | undefined;
@@ -112,6 +116,13 @@ export class FollowCamera {
     if (!this.touched) this.frame();
   }
 
+  /** Makes the opening view fit a dancer of another size; our figure has 1. */
+  fit(size: number): void {
+    if (size === this.size) return;
+    this.size = size;
+    if (!this.touched) this.frame();
+  }
+
   /** Glides (or, with reduced motion, jumps) back to the opening view round the figure. */
   frame(): void {
     this.touched = false;
@@ -154,6 +165,7 @@ export class FollowCamera {
       moved = true;
     }
     this.controls.update(seconds);
+    this.easing = this.moved || this.gliding !== null;
     moved ||= this.moved;
     this.moved = false;
     return moved;
@@ -162,6 +174,8 @@ export class FollowCamera {
   private settle(before: () => { position: Vector3; target: Vector3 } | null): void {
     clearTimeout(this.settling);
     this.settling = setTimeout(() => {
+      // On a slow machine the same way takes longer.
+      if (this.easing) return this.settle(before);
       this.settling = undefined;
       const [from, to] = [before(), this.view(true)];
       const still = from && from.position.distanceTo(to.position) + from.target.distanceTo(to.target) < STILL;
@@ -184,8 +198,10 @@ export class FollowCamera {
 
   private home(): { position: Vector3; target: Vector3 } {
     const [x, z] = this.centre;
-    const target = new Vector3(x, LOOK_HEIGHT, z);
-    const box = { ...FIGURE_BOX, width: FIGURE_BOX.width + this.room };
+    const { size } = this;
+    const target = new Vector3(x, LOOK_HEIGHT * size, z);
+    const { width, height, depth } = FIGURE_BOX;
+    const box = { height: height * size, width: width * size + this.room, depth: depth * size };
     const distance = framingDistance((this.camera.fov * Math.PI) / 180, this.camera.aspect, box);
     const flat = Math.cos(VIEW.elevation) * distance;
     const position = target

@@ -4,6 +4,8 @@ import type { CameraView } from '../core/document';
 import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
 import type { FramePose, PoseTools } from '../core/types';
 import { JOINT_COUNT } from '../core/skeleton';
+import type { AvatarFigure } from './avatar';
+import { AvatarPlace } from './avatar-place';
 import { Figure } from './figure';
 import { loadFigure, type FigureAsset } from './figure-asset';
 import { createBackdrop, Floor } from './floor';
@@ -31,8 +33,10 @@ export interface Stage {
   readonly canvas: HTMLCanvasElement;
   /** Resolves when the figure is there; rejects when it cannot be loaded. */
   readonly ready: Promise<void>;
-  /** Draws a frame of the dance. In pose mode it is kept for later. */
-  show(pose: FramePose): void;
+  /** Draws a frame of the dance, so many seconds of it after the one before (0 = a jump). In pose mode it is kept for later. */
+  show(pose: FramePose, seconds?: number): void;
+  /** A character in the place of our figure, in the dance; null = our own. The same one again is drawn anew. */
+  setAvatar(avatar: AvatarFigure | null): void;
   /** Draws a frame of another dance beside it, to the left; null = the dance is alone. */
   showBeside(pose: FramePose | null): void;
   /** Dresses our own figure, and the second dancer like it. */
@@ -98,6 +102,7 @@ class WebGLStage implements Stage {
   private readonly onion = new Onion();
   private readonly path = new Path();
   private readonly bodyClicks: BodyClicks;
+  private readonly place: AvatarPlace;
   private ghosts: readonly Ghost[] | null = null;
   private look: Readonly<FigureLook> = DEFAULT_LOOK;
   private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
@@ -135,7 +140,8 @@ class WebGLStage implements Stage {
       orbit: (on) => (this.view.controls.enabled = on),
       calm: this.calm,
     });
-    this.bodyClicks = new BodyClicks(this.canvas, this.view.camera, () => (this.mode === 'dance' ? this.figure : null));
+    this.place = new AvatarPlace((object) => this.renderer.compileAsync(object, this.view.camera, this.scene));
+    this.bodyClicks = new BodyClicks(this.canvas, this.view.camera, () => (this.mode === 'dance' ? this.dancer : null));
     this.scene.add(
       this.backdrop,
       this.floor.mesh,
@@ -143,6 +149,7 @@ class WebGLStage implements Stage {
       this.onion.group,
       this.path.group,
       this.beside.group,
+      this.place.group,
     );
     this.canvas.addEventListener('dblclick', () => this.mode === 'dance' && this.frameFigure());
     this.canvas.addEventListener('webglcontextrestored', () => (this.dirty = true));
@@ -161,10 +168,18 @@ class WebGLStage implements Stage {
     this.view.follow = on || this.mode === 'pose';
   }
 
-  show(pose: FramePose): void {
+  show(pose: FramePose, seconds = 0): void {
     this.last.root.set(pose.root);
     this.last.quaternions.set(pose.quaternions);
-    if (this.mode === 'dance') this.draw();
+    if (this.mode === 'dance') this.draw(seconds);
+  }
+
+  setAvatar(avatar: AvatarFigure | null): void {
+    this.place.set(avatar, this.last, () => {
+      this.makeRoom();
+      if (this.mode === 'dance') this.draw();
+      this.dirty = true;
+    });
   }
 
   showBeside(pose: FramePose | null): void {
@@ -191,6 +206,7 @@ class WebGLStage implements Stage {
     if (mode === this.mode) return;
     this.mode = mode;
     this.posing.setActive(mode === 'pose');
+    this.makeRoom();
     // The edited figure stands at the stage's centre, so the camera must come even if it does not follow the dance.
     this.view.follow = mode === 'pose' || this.wantsFollow;
     if (mode === 'dance') this.draw();
@@ -289,6 +305,7 @@ class WebGLStage implements Stage {
     for (const watcher of this.watchers) watcher.disconnect();
     this.posing.dispose();
     this.onion.dispose();
+    this.place.dispose();
     this.beside.dispose();
     this.path.dispose();
     this.bodyClicks.dispose();
@@ -313,17 +330,35 @@ class WebGLStage implements Stage {
     if (this.disposed) return figure.dispose();
     this.figure = figure;
     this.asset = asset;
+    this.makeRoom();
     this.dirty = true;
     this.setGhosts(this.ghosts);
     if (this.mode === 'dance') this.draw();
     else this.posing.refresh();
   }
 
-  private draw(): void {
-    const [x, , z] = this.last.root;
+  /** Whom the dance is danced by: a character, or our figure. */
+  private get dancer(): AvatarFigure | Figure | null {
+    return this.place.avatar ?? this.figure;
+  }
+
+  /** Either our figure or a character is to be seen, and what is drawn around it has its size. Poses are edited on our figure. */
+  private makeRoom(): void {
+    const avatar = this.mode === 'dance' ? this.place.avatar : null;
+    this.place.group.visible = avatar !== null;
+    if (this.figure) this.figure.mesh.visible = avatar === null;
+    for (const { group } of [this.onion, this.path]) group.scale.setScalar(avatar?.stride ?? 1);
+    this.view.fit(avatar?.size ?? 1);
+  }
+
+  private draw(seconds = 0): void {
+    const stride = this.place.avatar?.stride ?? 1;
+    const [x, z] = [this.last.root[0] * stride, this.last.root[2] * stride];
     const other = this.beside.root;
     this.view.aim(other ? (x + other[0]) / 2 : x, other ? (z + other[1]) / 2 : z);
     this.figure?.show(other ? aside(this.last, APART) : this.last);
+    this.place.group.position.x = other ? APART : 0;
+    this.place.avatar?.show(this.last, seconds);
     this.dirty = true;
   }
 
@@ -385,7 +420,7 @@ class WebGLStage implements Stage {
     this.floor.follow(x, z);
     this.lights.follow(x, z);
     this.backdrop.position.copy(this.view.camera.position);
-    this.floor.shade(this.figure!.pose.joints);
+    this.floor.shade((this.mode === 'dance' ? this.dancer! : this.figure!).pose.joints);
     this.renderer.render(this.scene, this.view.camera);
   }
 }

@@ -1,5 +1,7 @@
 import { useComputed } from '@preact/signals';
 import type { Store } from '../app/store';
+import { BonesDialog } from './avatar/BonesDialog';
+import { CharacterQuestion } from './avatar/CharacterQuestion';
 import { DropOverlay } from './DropOverlay';
 import { ExportPanel } from './export/ExportPanel';
 import { HelpOverlay } from './HelpOverlay';
@@ -34,6 +36,8 @@ export function App({ store, thumbnails }: { store: Store; thumbnails: Thumbnail
           <HelpOverlay />
           <ExportPanel />
           <VideoPanel />
+          <BonesDialog />
+          <CharacterQuestion />
           <Tour />
           <DropOverlay />
         </div>

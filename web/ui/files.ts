@@ -1,4 +1,5 @@
 /** Files from the visitor: chosen, dropped, saved. */
+import { mayBeAvatar } from '../app/avatar-file';
 import { isJson, isPoseFile, jsonKindOf } from '../app/pose-reader';
 import type { Store } from '../app/store';
 
@@ -6,9 +7,10 @@ export { fileName, saveFile } from '../app/download';
 
 const PROJECT = /\.(posebeat|json|zip)$/i;
 
-/** Opens whatever file it is: a project, a song, poses or a dance. */
+/** Opens whatever file it is: a project, a song, a character, poses or a dance. */
 export function openFile(store: Store, file: File): void {
-  if (isPoseFile(file)) void store.importPoseFile(file);
+  if (mayBeAvatar(file)) void store.openGltf(file, (each) => void store.importPoseFile(each));
+  else if (isPoseFile(file)) void store.importPoseFile(file);
   else if (isJson(file)) void openJson(store, file);
   else if (PROJECT.test(file.name)) void store.openProject(file);
   else void store.dropSong(file);

@@ -36,7 +36,8 @@ export async function startStage(
       shownBeside = beside;
     }
     if (stage && motion && (motion !== shownMotion || time !== shownTime)) {
-      stage.show(framePose(motion, time, pose));
+      const step = motion === shownMotion && state.playing.value ? time - shownTime : 0;
+      stage.show(framePose(motion, time, pose), step);
       shownMotion = motion;
       shownTime = time;
     }
@@ -89,6 +90,7 @@ export async function startStage(
     }),
     effect(() => opened.setLook(look.value)),
     effect(() => opened.setPoseTools(state.poseTools.value)),
+    effect(() => opened.setAvatar((state.avatarMapping.value ?? state.avatar.value)?.figure ?? null)),
     bindOverlays(opened, store),
   );
   return () => {

@@ -1,0 +1,93 @@
+/** The picture side of a character's file: three's objects for its nodes. Nothing is ever loaded from anywhere else. No page is needed. */
+import { LoadingManager, Mesh, SkinnedMesh, Sphere, Texture, type Material, type Object3D } from 'three';
+import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
+import type { VRM } from '@pixiv/three-vrm';
+
+/** A file as three has it. */
+export interface LoadedAvatar {
+  scene: Object3D;
+  /** For each node of the file its object; a node that is not in the scene has none. */
+  nodes: (Object3D | undefined)[];
+  /** Hair, skirts, constraints and materials of a VRM; null for any other file. */
+  vrm: VRM | null;
+}
+
+/** Any pose of a dancer fits in a ball this many times its height. */
+const REACH = 1.2;
+
+/**
+ * Builds the objects of a .glb, .vrm or self-contained .gltf file that was looked through before.
+ * @throws Error with a sentence for the visitor
+ */
+export async function loadAvatar(bytes: Uint8Array, isVrm: boolean): Promise<LoadedAvatar> {
+  const manager = new LoadingManager();
+  manager.setURLModifier((url) => {
+    if (!/^(blob|data):/.test(url))
+      throw new Error('This file keeps parts of itself in other files: export it as one .glb file.');
+    return url;
+  });
+  const loader = new GLTFLoader(manager);
+  const [{ MeshoptDecoder }, vrm] = await Promise.all([
+    import('three/addons/libs/meshopt_decoder.module.js'),
+    isVrm ? import('@pixiv/three-vrm') : null,
+  ]);
+  loader.setMeshoptDecoder(MeshoptDecoder);
+  // The bones are moved by us, as they lie in the file.
+  if (vrm) loader.register((parser) => new vrm.VRMLoaderPlugin(parser, { autoUpdateHumanBones: false }));
+  let gltf: GLTF;
+  try {
+    gltf = await loader.parseAsync(bytes.slice().buffer, '');
+  } catch (error) {
+    throw new Error(`The character could not be read (${shortly(error)}): export it again as a .glb or .vrm file.`, {
+      cause: error,
+    });
+  }
+  const nodes: (Object3D | undefined)[] = [];
+  for (const [object, { nodes: node }] of gltf.parser.associations as Map<Object3D, { nodes?: number }>) {
+    // Parts of a node's mesh bear its number too: the node itself is what hangs highest.
+    if (node === undefined || !('isObject3D' in object)) continue;
+    const known = nodes[node];
+    if (!known || isAbove(object, known)) nodes[node] = object;
+  }
+  return { scene: gltf.scene, nodes, vrm: (gltf.userData.vrm as VRM | undefined) ?? null };
+}
+
+function shortly(error: unknown): string {
+  const text = error instanceof Error ? error.message : String(error);
+  return text.replace(/^THREE\.GLTFLoader: /, '').slice(0, 120);
+}
+
+function isAbove(object: Object3D, other: Object3D): boolean {
+  for (let at = other.parent; at; at = at.parent) if (at === object) return true;
+  return false;
+}
+
+/** Makes the meshes ready for a stage: they cast shadows and are drawn wherever their bones take them. */
+export function prepareMeshes(scene: Object3D, height: number): void {
+  scene.traverse((object) => {
+    if (!(object instanceof Mesh)) return;
+    object.castShadow = true;
+    object.receiveShadow = true;
+    if (!(object instanceof SkinnedMesh)) return;
+    object.frustumCulled = false;
+    // Without it three would skin every vertex on the CPU to sort the scene.
+    object.boundingSphere = new Sphere(undefined, height * REACH);
+  });
+}
+
+/** Frees geometry, materials and pictures of a scene. */
+export function disposeScene(scene: Object3D): void {
+  scene.traverse((object) => {
+    if (!(object instanceof Mesh)) return;
+    (object.geometry as { dispose(): void }).dispose();
+    if (object instanceof SkinnedMesh) object.skeleton.dispose();
+    for (const material of [object.material].flat() as Material[]) {
+      for (const value of Object.values(material) as unknown[]) {
+        if (!(value instanceof Texture)) continue;
+        value.dispose();
+        (value.source.data as { close?: () => void } | null)?.close?.();
+      }
+      material.dispose();
+    }
+  });
+}
