@@ -176,11 +176,7 @@ class CurveNet(nn.Module):
             nn.init.zeros_(last.bias)
 
     def forward(self, keys: Tensor, key_mask: Tensor, seconds: Tensor, music: Tensor) -> tuple[Tensor, Tensor]:
-        matrices = quaternion_to_matrix(keys)  # [B, 4, 24, 3, 3]
-        sine, cosine = level_heading(matrices[:, 1, 0, :, 2])
-        columns = matrices[..., :2].transpose(-1, -2).flatten(-2)  # [B, 4, 24, 6]
-        pelvis = turn_columns(columns[:, :, 0], -sine[:, None], cosine[:, None])
-        columns = torch.cat([pelvis[:, :, None], columns[:, :, 1:]], 2)
+        matrices, sine, cosine, columns = self._level(keys)
         x = self._decode(columns, key_mask, seconds, music)  # [J, B, D]
         turns = self.turns(x)[FROM_TREE].transpose(0, 1)  # [B, J, 9]
         first, second, shape = turns.split((3, 3, 3), -1)
@@ -207,6 +203,15 @@ class CurveNet(nn.Module):
         zero = heights[:, :1] * 0
         root = torch.stack([torch.cat([zero, heights[:, :1], zero], 1), torch.cat([moved[:, :1], heights[:, 1:], moved[:, 2:]], 1)], 1)
         return torch.cat([root_curves, rotations], 1), root
+
+    @staticmethod
+    def _level(keys: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Matrices [B, 4, 24, 3, 3] of the keys, sine and cosine [B, 1] of the start's heading, columns [B, 4, 24, 6] in that heading."""
+        matrices = quaternion_to_matrix(keys)
+        sine, cosine = level_heading(matrices[:, 1, 0, :, 2])
+        columns = matrices[..., :2].transpose(-1, -2).flatten(-2)
+        pelvis = turn_columns(columns[:, :, 0], -sine[:, None], cosine[:, None])
+        return matrices, sine, cosine, torch.cat([pelvis[:, :, None], columns[:, :, 1:]], 2)
 
     def _decode(self, columns: Tensor, key_mask: Tensor, seconds: Tensor, music: Tensor) -> Tensor:
         """Four poses in the heading of the second [B, 4, 24, 6] -> features of the interval [J, B, D]."""

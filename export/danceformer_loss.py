@@ -10,6 +10,7 @@ from torch import Tensor, nn
 from curve_net import FEATURES, STEPS, CurveNet
 from curves import Curves, motion_channels, sample_evenly
 from danceformer_data import Intervals, KeyRows, absent_poses
+from frame_net import MOMENTS, FrameNet
 from rotation import quaternion_to_matrix, six_d_to_matrix
 from skeleton import forward_kinematics
 from spec import JOINT_COUNT, ROTATION_SIZE
@@ -146,15 +147,30 @@ class KeyLoss:
         return loss, {name: float(value.detach()) for name, value in terms.items()}, made
 
 
-def network_curves(model: CurveNet, batch: Intervals) -> tuple[Curves, Tensor, Tensor]:
-    """The network on rows of intervals -> (curves on the real key roots, path [B, N, 2] of the roots in the world, raw output)."""
+def network_inputs(batch: Intervals) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """keys, key_mask, seconds, music of all intervals of the rows, one after the other [B N, ...]."""
     rows, count = batch.music.shape[:2]
     quaternions = batch.keys[..., 3:].unflatten(-1, (JOINT_COUNT, 4))
     keys = torch.stack([quaternions[:, i : i + count] for i in range(4)], 2).flatten(0, 1)
     known = torch.ones(rows, count, 2)
     known[:, 0, 0], known[:, -1, 1] = batch.outer[:, 0], batch.outer[:, 1]
     seconds = torch.stack([batch.seconds[:, i : i + count] for i in range(3)], 2).flatten(0, 1)
-    output, root = model(keys, known.flatten(0, 1), seconds, batch.music.flatten(0, 1))
+    return keys, known.flatten(0, 1), seconds, batch.music.flatten(0, 1)
+
+
+def network_frames(model: FrameNet, batch: Intervals) -> tuple[Tensor, Tensor]:
+    """Frames instead of curves -> (channels [B, N, 9, 99] on the real key roots, path [B, N, 2])."""
+    rows, count = batch.music.shape[:2]
+    quaternions, offsets, path = (value.unflatten(0, (rows, count)) for value in model(*network_inputs(batch)))
+    start, end = batch.keys[:, 1:-2, None, :3], batch.keys[:, 2:-1, None, :3]
+    share = ((torch.arange(MOMENTS) + 0.5) / MOMENTS)[:, None]
+    return torch.cat([start + (end - start) * share + offsets, quaternions.flatten(-2)], -1), path
+
+
+def network_curves(model: CurveNet, batch: Intervals) -> tuple[Curves, Tensor, Tensor]:
+    """The network on rows of intervals -> (curves on the real key roots, path [B, N, 2] of the roots in the world, raw output)."""
+    rows, count = batch.music.shape[:2]
+    output, root = model(*network_inputs(batch))
     output = output.unflatten(0, (rows, count))  # [B, N, 99, 5]
     return curves_of(output, batch.keys[:, 1:-1], batch.seconds[:, 1:-1]), root.unflatten(0, (rows, count))[:, :, 1, [0, 2]], output
 
@@ -178,9 +194,13 @@ class CurveLoss:
     def __init__(self, config: LossConfig) -> None:
         self.config = config
 
-    def __call__(self, model: CurveNet, batch: Intervals) -> tuple[Tensor, dict[str, float], dict]:
-        curves, path, output = network_curves(model, batch)
-        values = sample_evenly(curves)  # [B, N, 9, 99]
+    def __call__(self, model: CurveNet | FrameNet, batch: Intervals) -> tuple[Tensor, dict[str, float], dict]:
+        if isinstance(model, FrameNet):
+            values, path = network_frames(model, batch)
+            output = values.new_zeros(*values.shape[:2], 99, 5)  # no tension, continuity or bias to keep small
+        else:
+            curves, path, output = network_curves(model, batch)
+            values = sample_evenly(curves)  # [B, N, 9, 99]
         root, quaternions = motion_channels(values)
         real_root, real = motion_channels(batch.target)
         ours = forward_kinematics(quaternion_to_matrix(quaternions))

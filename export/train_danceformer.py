@@ -6,7 +6,7 @@
 Writes OUT/checkpoint.pt, OUT/log.jsonl (losses of training and, every --every steps, of the development songs) and OUT/runs.jsonl
 (command, settings, data hash, commit). Development songs are training songs held out for choices; --all trains on them too.
 --adversarial WEIGHT adds the conditional discriminators. Network variants: --body kpm|gnn|linear, --attention learned|gaussian|local|global,
---head codes|regress. --weights CHECKPOINT starts a new run (fresh rate, fresh optimiser) from the weights of an earlier one;
+--head codes|regress, --frames (stage 2 without curves). --weights CHECKPOINT starts a new run (fresh rate, fresh optimiser) from the weights of an earlier one;
 --trunk-rate SHARE trains stage 2's in-betweener along with the rest, at that share of the rate (0: it stays as it is).
 """
 
@@ -26,6 +26,7 @@ from danceformer_data import Dance, IntervalSampler, KeySampler, load_dances, sp
 from danceformer_loss import CurveLoss, Discriminator, KeyLoss, LossConfig, code_vectors, discriminator_views, key_targets
 from dantrans import DanTransConfig
 from data import load_clips
+from frame_net import FrameNet
 from record import record_run
 from spec import spec_hash
 from suggest import CODES, SuggestConfig, Suggester
@@ -56,6 +57,7 @@ class Settings:
     width: int = 48
     layers: int = 2
     dropout: float = 0.1
+    frames: bool = False  # stage 2 gives poses between the keys instead of curves
     all: bool = False
     trunk: str = ""  # checkpoint of train_inbetween.py that stage 2 starts from
     trunk_rate: float = 0.0  # share of the rate that the trunk is trained with
@@ -93,7 +95,7 @@ def build(settings: Settings) -> nn.Module:
         return Suggester(SuggestConfig(net=net, head=settings.head))
     if settings.stage == "curves":
         if not settings.trunk:
-            return CurveNet(CurveConfig(net=net))
+            return (FrameNet if settings.frames else CurveNet)(CurveConfig(net=net))
         whole = load_inbetweener(Path(settings.trunk))
         model = CurveNet(CurveConfig(net=net, trunk=whole.config))
         model.trunk.take(whole)

@@ -9,6 +9,7 @@ import pytest
 import torch
 
 import suggest
+from ablate_danceformer import finer
 from conftest import make_clip
 from curve_net import CurveConfig, CurveNet, ground_height, small_quaternion
 from curves import Curves, sample
@@ -18,12 +19,15 @@ from dance_metrics import pose_vectors
 from dantrans import FkIkBlock, JointFc, Reach, TREE_ORDER, DanTransConfig, fold_norms
 from export_danceformer import made_up_inputs, names_of, run, to_onnx
 from export_onnx import compress
+from frame_net import FrameNet
+from inbetween import InbetweenConfig, Inbetweener
 from metrics import matrices_of
 from rotation import axis_angle_to_matrix, matrix_to_quaternion, matrix_to_six_d, quaternion_to_matrix
 from samples import synthetic_motion
 from skeleton import forward_kinematics, mirror_motion
 from spec import FPS, JOINT_COUNT, PARENTS, ROTATION_SIZE, TOE_HEIGHT, TOES, spec_hash
 from suggest import BEAT_SIZE, CODES, PAST_BEATS, PAST_POSES, STEP, SuggestConfig, Suggester, steps
+from train_danceformer import Settings, Trainer
 
 MODELS = Path(__file__).resolve().parents[2] / "public" / "models"
 SMALL = DanTransConfig(width=8, music_width=16, dropout=0.0)
@@ -178,6 +182,58 @@ def test_untrained_curves_are_the_slerp():
     assert torch.allclose(angles[0], angles[1] / 3, atol=2e-3)
     toes = forward_kinematics(quaternion_to_matrix(inputs["keys"][:, 2]))[:, TOES, 1].amin(-1)
     assert torch.allclose(root[:, 1, 1] + toes, torch.tensor(TOE_HEIGHT))
+
+
+def test_untrained_frames_are_the_slerp():
+    model = FrameNet(CurveConfig(net=SMALL)).eval()
+    inputs = made_up_inputs("curves", 3, 4)
+    with torch.no_grad():
+        poses, offsets, path = model(*inputs.values())
+    assert poses.shape == (3, 9, JOINT_COUNT, 4) and not offsets.any() and not path.any()
+    start, end = inputs["keys"][:, 1], inputs["keys"][:, 2]
+    angle = lambda a, b: 2 * torch.acos((a * b).sum(-1).abs().clamp(max=1))  # noqa: E731
+    assert torch.allclose(angle(start, poses[:, 1]), angle(start, end) / 6, atol=3e-3)
+
+
+def test_frames_learn_from_the_loss_of_curves():
+    torch.manual_seed(0)
+    model = FrameNet(CurveConfig(net=SMALL))
+    batch = IntervalSampler([made_dance()], 6, 0).batch()
+    optimiser = torch.optim.Adam(model.parameters(), 5e-3)
+    losses = []
+    for _ in range(12):
+        loss, terms, _ = CurveLoss(LossConfig())(model, batch)
+        assert terms["shape"] == 0
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        losses.append(float(loss.detach()))
+    assert losses[-1] < 0.95 * losses[0]
+
+
+def test_a_finer_dance_keeps_its_beats_and_hears_between_them():
+    dance = made_dance()
+    fine = finer(dance, 3)
+    assert torch.allclose(fine.beats[::3], dance.beats) and len(fine.beats) == 3 * (len(dance.beats) - 1) + 1
+    assert torch.allclose(fine.music[::3, :53], dance.music[:, :53], atol=1e-4)
+    assert torch.allclose(fine.beats[1] - fine.beats[0], (dance.beats[1] - dance.beats[0]) / 3)
+    assert fine.music.shape == (len(fine.beats), BEAT_SIZE)
+
+
+def test_a_trunk_is_trained_only_when_it_is_asked_for(tmp_path):
+    whole = Inbetweener(InbetweenConfig(width=16, hidden=16, blocks=1))
+    torch.save({"sizes": whole.config.as_dict(), "averaged": whole.state_dict()}, tmp_path / "trunk.pt")
+    dances = [made_dance()]
+    for rate in (0.0, 0.5):
+        torch.manual_seed(0)
+        settings = Settings(stage="curves", steps=3, rows=2, width=8, trunk=str(tmp_path / "trunk.pt"), trunk_rate=rate)
+        trainer = Trainer(settings, LossConfig(), dances, [])
+        before = trainer.model.trunk.turns.weight.clone()
+        while not trainer.done():
+            trainer.step()
+        assert torch.equal(before, trainer.model.trunk.turns.weight) == (rate == 0)
+    rates = {group["share"]: group["lr"] for group in trainer.optimiser.param_groups}
+    assert rates[0.5] == pytest.approx(rates[1.0] / 2)
 
 
 def test_ground_height_stands_the_figure_on_the_floor():
