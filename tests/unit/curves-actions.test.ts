@@ -215,6 +215,58 @@ describe('a change of a curve', () => {
     expect(store.state.document.value.curveEdits).toHaveLength(1);
   });
 
+  it('never passes to another key pose, whatever takes its place; what stays keeps it', async () => {
+    const { store } = await withCurves();
+    const edited = () => store.state.document.value.curveEdits ?? [];
+    const anchors = () => store.state.dance.value!.curves!.anchors;
+    const keys = () => store.state.document.value.keyPoses;
+    store.changeCurve(first(store), elbow, { tension: 1 });
+    const kept = edited();
+    // The first two are what they were, the third is another.
+    store.setKeyPoses([1, 1.5, 2].map((time, i) => ({ time, rotations: poses[i === 2 ? 3 : i] })));
+    expect(edited()).toEqual(kept);
+    // Other poses at other times in their places.
+    store.setKeyPoses([1.2, 1.7, 2.2].map((time, i) => ({ time, rotations: poses[3 - i] })));
+    expect(edited()).toEqual([]);
+    store.undo();
+    expect(edited()).toEqual(kept);
+    // Even while the curves of a pose that is gone are on stage still.
+    store.deleteKeys(new Set(keys().map(({ id }) => id)));
+    store.addKey(poses[3], 4, { exact: true });
+    const { motion } = store.state.dance.value!;
+    store.changeCurve(1, elbow, { tension: 0.5 });
+    expect(edited()).toEqual([]);
+    expect(store.state.dance.value!.motion).toBe(motion);
+    expect(store.state.notices.value.at(-1)?.text).toMatch(/is gone/);
+    expect(anchors()).not.toContain(keys()[0].id);
+  });
+
+  it('goes with suggestions that give way to others', async () => {
+    const { store, services } = await withCurves();
+    services.suggester = {
+      load: async () => undefined,
+      alternates: async () => [],
+      suggest: async (_, { onPoses }) => {
+        onPoses?.(
+          [1, 1.5, 2].map((time, i) => ({ time, rotations: poses[3 - i] })),
+          1,
+        );
+        return { backend: 'wasm', model: 'suggest', steps: 3, milliseconds: 1 };
+      },
+    };
+    store.setKeyPoses([1, 1.5, 2].map((time, i) => ({ time, rotations: poses[i], suggested: true })));
+    await store.generate();
+    store.changeCurve(first(store), elbow, { tension: 1 });
+    const before = store.state.document.value;
+    expect(before.curveEdits).toHaveLength(1);
+    await store.suggestKeyPoses();
+    expect(store.state.document.value).not.toHaveProperty('curveEdits');
+    const ids = store.state.document.value.keyPoses.map(({ id }) => id);
+    expect(before.keyPoses.filter(({ id }) => ids.includes(id))).toEqual([]);
+    store.undo();
+    expect(store.state.document.value).toEqual(before);
+  });
+
   it('is in a dance that is made anew, and in the one that is kept for the next visit', async () => {
     const saved: { curves?: unknown; curveEdits?: readonly unknown[]; motion: Motion }[] = [];
     const { store, services } = await withCurves();

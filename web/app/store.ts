@@ -1,6 +1,5 @@
 /** The store: signals, and the only actions that write them. */
 import { batch, effect } from '@preact/signals';
-import { withoutOrphans } from '../core/curves-edit';
 import { createDocument, type ProjectDocument } from '../core/document';
 import { isLink } from '../core/formats/share-link';
 import { History } from '../core/history';
@@ -9,7 +8,7 @@ import { avatarActions } from './actions/avatar';
 import { beatActions } from './actions/beats';
 import { cameraActions } from './actions/camera';
 import { compareActions } from './actions/compare';
-import { curveActions } from './actions/curves';
+import { curveActions, withOwnCurves } from './actions/curves';
 import { danceActions } from './actions/dance';
 import { demoActions } from './actions/demo';
 import { exportActions } from './actions/export';
@@ -196,16 +195,6 @@ export function createStore(services: Services, reporter: Reporter) {
     notify: context.notify,
     announce: context.announce,
   };
-}
-
-/** A key pose that goes takes the changes of its curves along: its id may be given again. */
-function withOwnCurves(document: ProjectDocument): ProjectDocument {
-  const { curveEdits, keyPoses } = document;
-  const kept = curveEdits && withoutOrphans(curveEdits, keyPoses);
-  if (kept === curveEdits) return document;
-  const next = { ...document, curveEdits: kept };
-  if (!kept?.length) delete next.curveEdits;
-  return next;
 }
 
 /** State and actions of the page. */

@@ -133,7 +133,7 @@ export function frameOf(time: number): number {
 }
 
 /** The first id of the form k1, k2... that no key pose has; the same edits always give the same ids. */
-export function nextKeyId(keys: readonly KeyPose[]): string {
+export function nextKeyId(keys: readonly Pick<KeyPose, 'id'>[]): string {
   const highest = keys.reduce((most, key) => Math.max(most, Number(/^k(\d{1,9})$/.exec(key.id)?.[1] ?? 0)), 0);
   return `k${highest + 1}`;
 }

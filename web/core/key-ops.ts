@@ -24,6 +24,34 @@ export function lastKeyTime(duration: number): number {
   return Math.max(0, duration - FRAME);
 }
 
+/**
+ * Gives the entries of a list from outside ids before it is checked, where they bring none: that of the key pose that they are already
+ * (same frame, same rotations), else one that none of these key poses has. What hangs on an id, such as changed curves, then never
+ * passes to another pose.
+ * @param before the key poses that the list takes the place of
+ * @param alsoTaken further ids that are not free
+ */
+export function withIds(input: unknown, before: Keys, alsoTaken: Iterable<unknown> = []): unknown {
+  if (!Array.isArray(input)) return input;
+  const given = new Set<unknown>(input.map((entry: Partial<KeyPose> | null) => entry?.id));
+  const taken = [...before.map(({ id }) => id), ...alsoTaken, ...given].filter((id) => typeof id === 'string');
+  let number = Number(nextKeyId(taken.map((id) => ({ id }))).slice(1));
+  return input.map((entry: Partial<KeyPose> | null) => {
+    if (typeof entry !== 'object' || entry === null || entry.id !== undefined) return entry;
+    const { time, rotations } = entry;
+    const same = before.find(
+      (key) =>
+        !given.has(key.id) &&
+        typeof time === 'number' &&
+        frameOf(key.time) === frameOf(time) &&
+        key.rotations.length === rotations?.length &&
+        key.rotations.every((angle, i) => angle === rotations[i]),
+    );
+    if (same) given.add(same.id);
+    return { ...entry, id: same?.id ?? `k${number++}` };
+  });
+}
+
 const tidy = (beats: number) => Math.round(beats / BEAT_NOISE) * BEAT_NOISE;
 const inside = (time: number, duration: number) => Math.min(Math.max(time, 0), lastKeyTime(duration));
 const byTime = (a: KeyPose, b: KeyPose) => a.time - b.time;

@@ -1,7 +1,8 @@
 /** The curves of a dance in the visitor's hands: changes are in the document, the dance on stage follows them at once. */
 import { effect, untracked } from '@preact/signals';
 import { beatCount } from '../../core/beat-count';
-import { knotBefore, sampleChannels, sampleCurves, type CurveDance, type CurveTrack } from '../../core/curves';
+import { knotBefore, sampleChannels, sampleCurves } from '../../core/curves';
+import type { CurveAnchor, CurveDance, CurveTrack } from '../../core/curves';
 import {
   applyEdits,
   findEdit,
@@ -13,6 +14,7 @@ import {
   trackName,
   trackOf,
   withEdit,
+  withoutOrphans,
   type CurveEdit,
   type Triple,
 } from '../../core/curves-edit';
@@ -64,6 +66,21 @@ export function curvesOnGrid(document: ProjectDocument, before: BeatGrid | null,
   return moved === curveEdits ? document : { ...document, curveEdits: moved };
 }
 
+/** Key poses that the curves on stage run through: they may be gone, yet their curves can be changed still, so their ids are not free. */
+export function idsOnStage(state: State): string[] {
+  return state.dance.value?.curves?.anchors.filter((anchor) => typeof anchor === 'string') ?? [];
+}
+
+/** A document without the changes of curves whose key poses are gone. */
+export function withOwnCurves(document: ProjectDocument): ProjectDocument {
+  const { curveEdits, keyPoses } = document;
+  const kept = curveEdits && withoutOrphans(curveEdits, keyPoses);
+  if (kept === curveEdits) return document;
+  const next = { ...document, curveEdits: kept };
+  if (!kept?.length) delete next.curveEdits;
+  return next;
+}
+
 /** Actions on the curves of the dance. */
 export function curveActions(
   context: Context,
@@ -98,6 +115,11 @@ export function curveActions(
     const curves = state.dance.value?.curves;
     if (!curves || interval < 0 || interval + 1 >= curves.times.length) return null;
     const [from, to] = [curves.anchors[interval], curves.anchors[interval + 1]];
+    const ids = new Set<CurveAnchor>(state.document.value.keyPoses.map(({ id }) => id));
+    if ([from, to].some((anchor) => typeof anchor === 'string' && !ids.has(anchor))) {
+      context.notify('info', 'A key pose of this stretch is gone: generate the dance anew, then change its curves.');
+      return null;
+    }
     const edits = state.document.value.curveEdits ?? NO_EDITS;
     const known = findEdit(edits, curves, interval, track);
     return { edits, edit: known ?? ({ from, to, track: trackName(track) } satisfies CurveEdit) };

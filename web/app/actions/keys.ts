@@ -1,10 +1,11 @@
 /** Key poses on the timeline: add, change, delete, undo. Moving and copying: key-moves.ts. */
 import { checkKeyPoses, frameOf, nextKeyId } from '../../core/document';
-import { deleteKeys, editKeys, lastKeyTime, setStrength, settleKeys, toggleLock } from '../../core/key-ops';
+import { deleteKeys, editKeys, lastKeyTime, setStrength, settleKeys, toggleLock, withIds } from '../../core/key-ops';
 import { mirrorPose } from '../../core/skeleton';
 import { snapTime } from '../../core/snap';
 import type { KeyPose } from '../../core/types';
 import type { Context } from '../context';
+import { idsOnStage } from './curves';
 import { keyMoves } from './key-moves';
 import { keySelection } from './key-selection';
 
@@ -62,7 +63,7 @@ export function keyActions(context: Context) {
         context.notify('info', 'The key pose there is locked: unlock it to put another in its place.');
         return '';
       }
-      const id = nextKeyId(keys);
+      const id = nextKeyId([...keys, ...idsOnStage(state).map((taken) => ({ id: taken }))]);
       const key: KeyPose = { id, time: at, rotations: [...rotations] };
       if (options.name) key.name = options.name;
       setKeys(replaced ? 'Replace key pose' : 'Add key pose', settleKeys(keys, [key], state.duration.value));
@@ -151,7 +152,8 @@ export function keyActions(context: Context) {
 
     /** Replaces all key poses by checked ones from outside; throws and changes nothing when they are wrong. */
     setKeyPoses(input: unknown): void {
-      const keys = checkKeyPoses(input, state.duration.value || Infinity);
+      const named = withIds(input, keysNow(), idsOnStage(state));
+      const keys = checkKeyPoses(named, state.duration.value || Infinity);
       setKeys('Set key poses', keys);
       state.selection.value = new Set();
     },

@@ -1,5 +1,5 @@
 /** Suggesting key poses: a whole timeline, a range or the gaps; and other poses for one of them. */
-import type { TimeRange } from '../../core/document';
+import { nextKeyId, type TimeRange } from '../../core/document';
 import { lastKeyTime, settleKeys } from '../../core/key-ops';
 import { spec } from '../../core/spec';
 import {
@@ -12,6 +12,7 @@ import {
 import type { KeyPose } from '../../core/types';
 import { isAbort, messageOf, onGrid, type Context } from '../context';
 import { trimFrames } from '../recipe';
+import { idsOnStage, withOwnCurves } from './curves';
 import type { SuggestChoice } from '../suggester';
 
 /** What the API can ask for; what is left out is as in the menu's first state. */
@@ -124,7 +125,8 @@ export function suggestActions(context: Context, generate: () => Promise<void>) 
       };
       const stay = keysThatStay(keyPoses, suggestionRange(request) ?? range);
       // Numbers that no key pose had before: what is remembered of a former one must not be taken for this one's.
-      const first = 1 + keyPoses.reduce((most, { id }) => Math.max(most, Number(/^k(\d{1,9})$/.exec(id)?.[1] ?? 0)), 0);
+      const taken = [...keyPoses, ...idsOnStage(state).map((id) => ({ id }))];
+      const first = Number(nextKeyId(taken).slice(1));
       const found: KeyPose[] = [];
       /** Undone, or changed by hand. */
       const isOver = () => shown !== null && (!history.capturing || history.present.keyPoses !== shown);
@@ -132,7 +134,7 @@ export function suggestActions(context: Context, generate: () => Promise<void>) 
         for (const pose of poses) found.push({ id: `k${first + found.length}`, ...pose, suggested: true });
         if (shown === null) history.capture();
         shown = settleKeys(stay, found, state.duration.value);
-        history.preview({ ...history.present, keyPoses: shown as KeyPose[] });
+        history.preview(withOwnCurves({ ...history.present, keyPoses: shown as KeyPose[] }));
         context.sync();
       };
       await worker.suggest(
