@@ -34,6 +34,7 @@ import './style-project.css';
 import './style-export.css';
 import './style-video.css';
 import './style-share.css';
+import './style-figure.css';
 import './style-avatar.css';
 import './style-phone.css';
 import './style-contrast.css';

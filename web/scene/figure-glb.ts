@@ -64,8 +64,8 @@ function paintOf(look: Readonly<FigureLook>): Paint {
     return (x, y, z) => {
       const reach = Math.abs(x);
       if (y > at('neck', 1) + 0.03 && reach < 0.13) {
-        const [dx, dy] = [reach - 0.033, (y - at('head', 1) - 0.092) * 0.8];
-        return z > 0.02 && Math.hypot(dx, dy) < 0.0125 ? visor : warm;
+        const [dx, dy] = [reach - 0.031, (y - at('head', 1) - 0.094) * 0.72];
+        return z > 0.02 && Math.hypot(dx, dy) < 0.0092 ? visor : warm;
       }
       const arm = reach > at('left_shoulder', 0) - 0.005 && y > at('spine2', 1);
       return arm || y < at('left_hip', 1) + 0.045 + 0.35 * (reach - 0.08) ? sideOf(x) : warm;

@@ -72,7 +72,7 @@ void main() {
   rings += arm ? tube(reach - ${at('left_elbow', 0)}, 0.003) + tube(reach - ${at('left_wrist', 0)} + 0.045, 0.003) : 0.0;
   rings += vRest.y < 0.7 ? tube(vRest.y - ${at('left_knee', 1)}, 0.003) + tube(vRest.y - ${at('left_ankle', 1)} - 0.06, 0.003) : 0.0;
   float fill = part > 1.5 && part < 2.5 ? 0.85 : part > 2.5 ? 0.16 : 0.045;
-  vec3 colour = vec3(0.006, 0.008, 0.014) + glow * (fill + 0.55 * rim + 1.15 * line + 1.1 * rings);
+  vec3 colour = vec3(0.006, 0.008, 0.014) + glow * (fill + 0.7 * rim + 1.5 * line + 1.2 * rings);
   colour += vec3(0.3) * glow * line * line;
   gl_FragColor = vec4(colour, 1.0);
   #include <tonemapping_fragment>

@@ -57,8 +57,8 @@ paint *= 1.0 - 0.4 * (1.0 - onHead) * (1.0 - smoothstep(0.0, 0.006, abs(seam)));
 float dents = sin(vRest.x * 61.0 + sin(vRest.y * 43.0)) * sin(vRest.y * 57.0 + sin(vRest.z * 49.0)) * sin(vRest.z * 67.0 + 1.7 * sin(vRest.x * 37.0));
 paint *= 1.0 + 0.09 * dents;
 if (onHead > 0.5 && vRest.z > 0.02) {
-  vec2 eye = vec2(reach - 0.033, vRest.y - (${height('head')} + 0.092));
-  paint = mix(paint, visorColour, 1.0 - edge(length(eye * vec2(1.0, 0.8)) - 0.0125));
+  vec2 eye = vec2(reach - 0.031, vRest.y - (${height('head')} + 0.094));
+  paint = mix(paint, visorColour, 1.0 - edge(length(eye * vec2(1.0, 0.72)) - 0.0092));
 }
 float paintRoughness = 0.92;`;
 

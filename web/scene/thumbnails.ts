@@ -1,5 +1,6 @@
 /** Pictures of poses: the same figure before nothing, drawn by one small renderer in idle time. */
 import { NeutralToneMapping, OrthographicCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
 import { poseToQuaternions } from '../core/rotation';
 import { CAPSULES, placePoint, standingRoot } from './body-points';
 import { Figure } from './figure';
@@ -15,9 +16,10 @@ export interface Thumbnailer {
    * @param size edge in CSS pixels; the picture has twice as many
    * @param azimuth direction to the camera in the world, radians about Y, 0 = +Z: the same for all figures of a strip; by default the
    * pose's own front left
+   * @param look of the figure in this picture; missing: a new project's, whatever the project at hand wears
    * @returns an object URL, which the caller revokes
    */
-  render(rotations: ArrayLike<number>, size: number, azimuth?: number): Promise<string>;
+  render(rotations: ArrayLike<number>, size: number, azimuth?: number, look?: Readonly<FigureLook>): Promise<string>;
   dispose(): void;
 }
 
@@ -31,6 +33,7 @@ interface Job {
   rotations: ArrayLike<number>;
   size: number;
   azimuth?: number;
+  look?: Readonly<FigureLook>;
   resolve: (url: string) => void;
   reject: (error: unknown) => void;
 }
@@ -49,10 +52,10 @@ class QueuedThumbnailer implements Thumbnailer {
   private busy = false;
   private disposed = false;
 
-  render(rotations: ArrayLike<number>, size: number, azimuth?: number): Promise<string> {
+  render(rotations: ArrayLike<number>, size: number, azimuth?: number, look?: Readonly<FigureLook>): Promise<string> {
     if (this.disposed) return Promise.reject(new Error('The thumbnailer has been closed.'));
     return new Promise((resolve, reject) => {
-      this.queue.push({ rotations: Array.from(rotations), size, azimuth, resolve, reject });
+      this.queue.push({ rotations: Array.from(rotations), size, azimuth, look, resolve, reject });
       void this.work();
     });
   }
@@ -71,7 +74,7 @@ class QueuedThumbnailer implements Thumbnailer {
         this.studio ??= Studio.open();
         const studio = await this.studio;
         await idle();
-        job.resolve(URL.createObjectURL(await studio.picture(job.rotations, job.size, job.azimuth)));
+        job.resolve(URL.createObjectURL(await studio.picture(job)));
       } catch (error) {
         job.reject(error);
       }
@@ -112,7 +115,8 @@ class Studio {
     return studio;
   }
 
-  async picture(rotations: ArrayLike<number>, size: number, azimuth?: number): Promise<Blob> {
+  async picture({ rotations, size, azimuth, look = DEFAULT_LOOK }: Job): Promise<Blob> {
+    this.figure.wear(look);
     const quaternions = poseToQuaternions(rotations);
     this.figure.show({ root: standingRoot(quaternions), quaternions });
     this.aim(azimuth ?? headingOf(quaternions) + TURN);

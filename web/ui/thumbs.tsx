@@ -1,12 +1,14 @@
 import { signal, type Signal } from '@preact/signals';
 import { createContext } from 'preact';
 import { useContext, useEffect, useMemo, useRef } from 'preact/hooks';
+import type { FigureLook } from '../core/figure-look';
 import { forwardKinematics, PARENTS } from '../core/skeleton';
 import { poseToQuaternions } from '../core/rotation';
 
 /** Renders a pose to an object URL. */
 export interface Thumbnailer {
-  render(rotations: readonly number[], size: number): Promise<string>;
+  /** Another look than the one of a new project is for this picture only. */
+  render(rotations: readonly number[], size: number, azimuth?: number, look?: FigureLook): Promise<string>;
 }
 
 /** Pictures are rendered once at this size (CSS pixels; twice as many real ones) and scaled down where they are shown. */
@@ -35,6 +37,15 @@ export class Thumbnails {
     let address = this.#cache.get(rotations);
     if (!address) this.#cache.set(rotations, (address = signal<string | null>(null)));
     return address;
+  }
+
+  /**
+   * A picture of the figure in some look, made in a calm moment; null where there is no 3D.
+   * @returns an object URL, which the caller revokes
+   */
+  async dressed(rotations: readonly number[], look: FigureLook): Promise<string | null> {
+    await this.#calm();
+    return this.#thumbnailer?.render(rotations, SIZE, undefined, look).catch(() => null) ?? null;
   }
 
   /** Asks for the picture. */

@@ -1,5 +1,6 @@
 /** The dance as a file for other programs. */
 import type { TimeRange } from '../../core/document';
+import { DEFAULT_LOOK, lookByte, type FigureLook } from '../../core/figure-look';
 import type { GlbFigure } from '../../core/formats/glb-write';
 import type { MotionNotes } from '../../core/formats/motion-json';
 import { sliceMotion } from '../../core/motion';
@@ -34,15 +35,18 @@ export interface Frames {
 }
 
 let figure: Promise<GlbFigure> | undefined;
+let dressed: number | undefined;
 
-/** Our figure for GLB files, made once. */
-export function loadGlbFigure(): Promise<GlbFigure> {
+/** Our figure for GLB files, made once for a look. */
+export function loadGlbFigure(look: Readonly<FigureLook> = DEFAULT_LOOK): Promise<GlbFigure> {
+  if (dressed !== lookByte(look)) figure = undefined;
+  dressed = lookByte(look);
   figure ??= (async () => {
     const [{ loadFigure }, { figureForGlb }] = await Promise.all([
       import('../../scene/figure-asset'),
       import('../../scene/figure-glb'),
     ]);
-    return figureForGlb(await loadFigure());
+    return figureForGlb(await loadFigure(), look);
   })();
   figure.catch(() => (figure = undefined));
   return figure;
@@ -136,7 +140,10 @@ export function exportActions(context: Context) {
       const name = state.document.value.song?.name ?? 'dance';
       const notes = notesOf(motion, part);
       const dressed = withFigure && (format === 'glb' || format === 'fbx');
-      const [origin, figure] = await Promise.all([originOf(state, shown, part), dressed ? loadGlbFigure() : undefined]);
+      const [origin, figure] = await Promise.all([
+        originOf(state, shown, part),
+        dressed ? loadGlbFigure(state.document.value.look) : undefined,
+      ]);
       own.signal.throwIfAborted();
       const bytes = await write(
         {

@@ -6,6 +6,7 @@ import { PosePicture } from '../thumbs';
 import { TakeStepper } from '../report/TakeStepper';
 import { TradeOffPlot } from '../report/TradeOffPlot';
 import { EngineSwitch } from '../curves/EngineSwitch';
+import { FigureSection } from '../figure/FigureSection';
 import { Slider } from './Slider';
 
 const strengthText = (value: number) =>
@@ -81,6 +82,7 @@ export function DancePanel() {
           </button>
         )}
       </section>
+      <FigureSection />
       <Engine />
     </>
   );
