@@ -37,7 +37,8 @@ export interface PosebeatApi {
   motion(): { fps: number; rotations: Float32Array; root: Float32Array };
   report(): DanceReport;
   /**
-   * A file. `bvh`, `glb`, `fbx`, `npz` (SMPL: AIST++ and AMASS names) and `json` hold the dance on stage; `project` is JSON text, or with
+   * A file. `bvh`, `glb`, `fbx`, `npz` (SMPL: AIST++ and AMASS names) and `json` hold the dance on stage, `avatar` the character of
+   * `setAvatar` with that dance (GLB); `project` is JSON text, or with
    * `song: true` a zip with the song's own bytes inside (both open again as `.posebeat`). `curves` is the dance of engine "curves": our
    * JSON, or with `as: 'glb'` an animation of cubic splines (`figure: true`: with our figure).
    */
@@ -113,7 +114,7 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       }
       if (format === 'curves') return store.exportCurves(options.as, { figure: options.figure === true });
       throw new Error(
-        `There is no export format "${String(format)}": use bvh, glb, fbx, npz, json, curves or project.`,
+        `There is no export format "${String(format)}": use bvh, glb, fbx, npz, json, avatar, curves or project.`,
       );
     },
     exportVideo: async (options = {}) => store.exportVideo(options),

@@ -17,7 +17,7 @@ export async function writeMotionFile(
   request: MotionFileRequest,
   progress: (fraction: number) => void = () => undefined,
 ): Promise<Uint8Array<ArrayBuffer>> {
-  const { format, units, name, notes, figure } = request;
+  const { format, units, name, notes, figure, avatar } = request;
   const motion = resampleMotion(request.motion, request.fps);
   // The rest is mostly the writing, which is measured where it takes long.
   progress(0.1);
@@ -26,6 +26,11 @@ export async function writeMotionFile(
     return text(writeBvh(motion, { units, progress: (fraction) => progress(0.1 + fraction * 0.9) }));
   if (format === 'npz') return writeNpz(motion, notes.origin);
   if (format === 'json') return text(writeMotionJson(motion, notes));
+  if (format === 'avatar') {
+    if (!avatar) throw new Error('There is no character of your own on the stage: choose one first.');
+    const { writeAvatar } = await import('./avatar-export');
+    return writeAvatar(avatar, motion, name, notes.origin);
+  }
   const times = frameTimes(motion);
   const samplers = [...motionSamplers(motion, times), ...(figure ? helperSamplers(motion, times) : [])];
   progress(0.6);

@@ -2,9 +2,10 @@
 import type { GlbFigure } from '../core/formats/glb-write';
 import type { MotionNotes } from '../core/formats/motion-json';
 import type { Motion } from '../core/types';
+import type { AvatarSource } from '../scene/avatar';
 
-/** Formats of motion files. */
-export const MOTION_FORMATS = ['bvh', 'glb', 'fbx', 'npz', 'json'] as const;
+/** Formats of motion files; `avatar` is the visitor's own character with the dance. */
+export const MOTION_FORMATS = ['bvh', 'glb', 'fbx', 'npz', 'json', 'avatar'] as const;
 /** One of them. */
 export type MotionFormat = (typeof MOTION_FORMATS)[number];
 /** Frame rates that are offered. */
@@ -24,6 +25,8 @@ export interface MotionFileRequest {
   notes: MotionNotes;
   /** GLB and FBX: the figure that dances; missing = the skeleton alone. */
   figure?: GlbFigure;
+  /** `avatar`: the character. */
+  avatar?: AvatarSource;
 }
 
 /** What browsers call the formats. */
@@ -33,7 +36,11 @@ export const MOTION_TYPES: Readonly<Record<MotionFormat, string>> = {
   fbx: 'application/octet-stream',
   npz: 'application/zip',
   json: 'application/json',
+  avatar: 'model/gltf-binary',
 };
+
+/** What a file's name ends with. */
+export const extensionOf = (format: MotionFormat): string => (format === 'avatar' ? 'glb' : format);
 
 /** Bytes per frame and of the rest, measured on dances of ours. */
 const SIZES: Readonly<Record<MotionFormat, { frame: number; rest: number }>> = {
@@ -42,6 +49,8 @@ const SIZES: Readonly<Record<MotionFormat, { frame: number; rest: number }>> = {
   fbx: { frame: 660, rest: 84_000 },
   npz: { frame: 540, rest: 3000 },
   json: { frame: 920, rest: 2500 },
+  // And the character's own file.
+  avatar: { frame: 370, rest: 5000 },
 };
 /** What the figure adds: its mesh and its helper bones. */
 const FIGURE: Readonly<Partial<typeof SIZES>> = {

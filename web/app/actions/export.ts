@@ -8,7 +8,7 @@ import type { Motion } from '../../core/types';
 import type { Dance } from '../state';
 import { isAbort, messageOf, type Context } from '../context';
 import { fileName, saveFile } from '../download';
-import { FRAME_RATES, MOTION_FORMATS, MOTION_TYPES, type MotionFormat } from '../motion-formats';
+import { extensionOf, FRAME_RATES, MOTION_FORMATS, MOTION_TYPES, type MotionFormat } from '../motion-formats';
 import type { MotionFileWriter } from '../export-client';
 import { originOf } from '../motion-origin';
 import { trimFrames } from '../recipe';
@@ -129,6 +129,10 @@ export function exportActions(context: Context) {
     if (units !== 'm' && units !== 'cm') throw new Error('units must be "m" or "cm".');
     const shown = dance();
     const { motion } = shown;
+    const avatar = format === 'avatar' ? state.avatar.value?.source : undefined;
+    if (format === 'avatar' && !avatar) {
+      throw new Error('There is no character of your own on the stage: choose one first.');
+    }
     const part = framesOf(motion, options.range);
     running?.abort(new DOMException('Another file was asked for.', 'AbortError'));
     const own = (running = new AbortController());
@@ -154,6 +158,7 @@ export function exportActions(context: Context) {
           name,
           notes: { ...notes, origin },
           ...(figure ? { figure } : {}),
+          ...(avatar ? { avatar } : {}),
         },
         job,
         own.signal,
@@ -184,7 +189,7 @@ export function exportActions(context: Context) {
     async saveMotion(format: MotionFormat, options: MotionFileOptions = {}): Promise<void> {
       try {
         const blob = await exportMotion(format, options);
-        const name = fileName(state.document.value.song?.name ?? 'dance', format);
+        const name = fileName(state.document.value.song?.name ?? 'dance', extensionOf(format));
         saveFile(blob, name);
         context.announce(`${name} is saved.`);
       } catch (error) {

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import type { MotionFileOptions } from '../../app/actions/export';
-import { estimateBytes, FRAME_RATES, type MotionFormat } from '../../app/motion-formats';
+import { estimateBytes, extensionOf, FRAME_RATES, type MotionFormat } from '../../app/motion-formats';
 import { clockTime } from '../../app/snapping';
 import type { CurveDance } from '../../core/curves';
 import spec from '../../core/spec.json';
@@ -59,17 +59,20 @@ export function ExportPanel() {
 
 function Contents() {
   const store = useStore();
-  const { onStage, document, loop, song } = store.state;
+  const { onStage, document, loop, song, avatar } = store.state;
   const dance = onStage.value;
   // Read here, so that the panel follows them.
   void [document.value.trim, loop.value];
   if (!dance || dance.kind === 'preview') return <NoDance />;
-  const card = FORMAT_CARDS.find(({ format }) => format === choice.format.value)!;
+  const own = avatar.value?.source.bytes.length;
+  const cards = FORMAT_CARDS.filter(({ format }) => format !== 'avatar' || own !== undefined);
+  const card = cards.find(({ format }) => format === choice.format.value) ?? cards[0];
   const { parts, part } = partsNow(choice.part.value, (each) => store.exportFrames(each) !== null);
   const frames = store.exportFrames(part) ?? 0;
   const last = Math.max(0, frames - 1) / dance.motion.fps;
   const fps = choice.fps.value;
   const count = Math.floor(last * fps + 1e-6) + 1;
+  const ownBytes = card.format === 'avatar' ? own! : 0;
   const options: MotionFileOptions = { fps, units: choice.units.value, figure: choice.figure.value, range: part };
   const name = song.value?.reference.name ?? document.value.song?.name;
   return (
@@ -77,8 +80,8 @@ function Contents() {
       <p class="hint">{name ? `To “${name}”. ` : ''}The file is made on this machine and goes nowhere else.</p>
       <fieldset class="export-cards">
         <legend class="visually-hidden">Format</legend>
-        {FORMAT_CARDS.map((each) => (
-          <FormatChoice key={each.format} card={each} />
+        {cards.map((each) => (
+          <FormatChoice key={each.format} card={each} chosen={each === card} />
         ))}
       </fieldset>
       <button
@@ -100,7 +103,7 @@ function Contents() {
           <p>
             <strong class="tabular">{clockTime(frames / dance.motion.fps)}</strong>
             <span class="hint tabular">
-              {count} frames, about {sizeText(estimateBytes(card.format, count, choice.figure.value))}
+              {count} frames, about {sizeText(estimateBytes(card.format, count, choice.figure.value) + ownBytes)}
             </span>
           </p>
           <SaveButton format={card.format} options={options} />
@@ -149,15 +152,15 @@ function CurvesFoot({ curves, frames }: { curves: CurveDance | undefined; frames
   );
 }
 
-function FormatChoice({ card }: { card: FormatCard }) {
+function FormatChoice({ card, chosen }: { card: FormatCard; chosen: boolean }) {
   return (
     <label class="export-card">
       <input
         type="radio"
         class="visually-hidden"
         name="export-format"
-        checked={choice.format.value === card.format}
-        autofocus={choice.format.value === card.format}
+        checked={chosen}
+        autofocus={chosen}
         aria-describedby={`export-${card.format}`}
         onChange={() => (choice.format.value = card.format)}
       />
@@ -256,7 +259,7 @@ function SaveButton({ format, options }: { format: MotionFormat; options: Motion
       ) : (
         <button type="button" class="primary motion-tone" onClick={() => void store.saveMotion(format, options)}>
           <Icon name="download" />
-          Save .{format}
+          Save .{extensionOf(format)}
         </button>
       )}
       <div class="visually-hidden" role="status">

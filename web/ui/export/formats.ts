@@ -52,6 +52,13 @@ export const FORMAT_CARDS: readonly FormatCard[] = [
     choices: [],
   },
   {
+    format: 'avatar',
+    name: 'Your character (GLB)',
+    text: 'Your own character, its file with the dance in it, for whatever opens the character.',
+    hint: 'Everything else in the file stays as it is. Hair and skirts are swung by the program that shows it.',
+    choices: [],
+  },
+  {
     format: 'curves',
     name: 'Curves',
     text: 'Keys at your key poses with curves between them, to go on editing in Blender, Unity or Unreal.',
