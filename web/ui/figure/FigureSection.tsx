@@ -3,6 +3,7 @@ import { useContext, useEffect } from 'preact/hooks';
 import { STYLE_NAMES } from '../../app/actions/look';
 import { DEFAULT_LOOK, FIGURE_COLOURS, FIGURE_STYLES, type FigureLook } from '../../core/figure-look';
 import { jointIndex } from '../../core/skeleton';
+import { OwnCharacter } from '../avatar/OwnCharacter';
 import { Icon } from '../Icon';
 import { useStore } from '../store-context';
 import { ThumbnailsContext } from '../thumbs';
@@ -33,8 +34,14 @@ export function FigureSection() {
         <Icon name="chevronRight" size={16} />
         <span>Figure</span>
         <small>
-          {STYLE_NAMES[look.style]}
-          <Swatch {...colours} />
+          {store.state.avatar.value ? (
+            store.state.avatar.value.name
+          ) : (
+            <>
+              {STYLE_NAMES[look.style]}
+              <Swatch {...colours} />
+            </>
+          )}
         </small>
       </summary>
       <div class="fold-body">
@@ -72,6 +79,7 @@ export function FigureSection() {
             </label>
           ))}
         </fieldset>
+        <OwnCharacter />
       </div>
     </details>
   );
