@@ -90,9 +90,12 @@ export class ModelEngine<I, O, G> {
     options: EngineOptions,
     onChange: (state: EngineState) => void = () => undefined,
   ): Promise<ModelEngine<I, O, G>> {
+    const choosing = chooseBackend(options.backend);
+    // The runtime comes while the weights do; what is wrong with it is said when it is used.
+    void choosing.then(({ backend }) => openRuntime(backend, 1)).catch(() => undefined);
     const [stored, choice] = await Promise.all([
       loadModel(options.folder, options.onProgress, kind.files),
-      chooseBackend(options.backend),
+      choosing,
     ]);
     const model = `${stored.manifest.name} (${stored.manifest.precision})`;
     const threads = threadsAvailable(options.threads);

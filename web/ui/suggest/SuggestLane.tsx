@@ -3,6 +3,29 @@ import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 
+/** How long an empty timeline is looked at before the model is fetched unasked, milliseconds. */
+const A_LOOK = 1200;
+
+/**
+ * Calls back when somebody has looked at the page for a moment and it has nothing else to do; never where data is to be saved.
+ * @returns takes the wish back
+ */
+function whenIdle(callback: () => void): () => void {
+  const { connection } = navigator as Navigator & { connection?: { saveData?: boolean } };
+  if (connection?.saveData) return () => undefined;
+  let idle: number | undefined;
+  const timer = setTimeout(() => {
+    if (document.visibilityState !== 'visible') return;
+    // Safari has no requestIdleCallback: there the moment itself must do.
+    if (typeof requestIdleCallback === 'function') idle = requestIdleCallback(callback);
+    else callback();
+  }, A_LOOK);
+  return () => {
+    clearTimeout(timer);
+    if (idle !== undefined) cancelIdleCallback(idle);
+  };
+}
+
 /** The answer to an empty timeline: one press fills it with key poses on the beats. */
 export function SuggestLane() {
   const store = useStore();
@@ -14,7 +37,11 @@ export function SuggestLane() {
     const timeline = document.querySelector('.timeline');
     const warm = () => store.warmSuggester();
     timeline?.addEventListener('pointerenter', warm, { once: true });
-    return () => timeline?.removeEventListener('pointerenter', warm);
+    const stop = whenIdle(warm);
+    return () => {
+      stop();
+      timeline?.removeEventListener('pointerenter', warm);
+    };
   }, [isOffered, store]);
   if (!isOffered) return null;
   return (
