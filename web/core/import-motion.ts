@@ -4,7 +4,7 @@
  */
 import { cleanContacts } from './contact';
 import type { PoseSequence } from './formats/pose-sequence';
-import { sha256Hex } from './spec-hash';
+import { clipId } from './clip-id';
 import { aboutY, headingOf } from './localframe';
 import { emptyMotion, framePose } from './motion';
 import { resampleMotion } from './motion-resample';
@@ -96,7 +96,7 @@ export function seedFromClip(clip: PoseSequence, from: number, tempo: number, na
     const back = (k: number) => place[k] - first.root[k] - ((end.root[k] - first.root[k]) * i) / count;
     root.push([short(back(0)), short(place[1] * (1 - blend) + first.root[1] * blend), short(back(2))]);
   }
-  const id = `own-${sha256Hex(JSON.stringify([poses, root])).slice(0, 12)}`;
+  const id = clipId(poses, root);
   return {
     id,
     name: name.slice(0, 60),

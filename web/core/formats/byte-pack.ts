@@ -60,6 +60,12 @@ export class ByteWriter {
     this.full(value);
   }
 
+  /** What another writer holds, after how much that is. */
+  part({ bytes }: ByteWriter): void {
+    this.whole(bytes.length);
+    for (const byte of bytes) this.bytes.push(byte);
+  }
+
   text(value: string): void {
     const encoded = new TextEncoder().encode(value);
     this.whole(encoded.length);
@@ -150,6 +156,13 @@ export class ByteReader {
     if (decimals === IN_FULL) return this.full();
     if (decimals > MAX_DECIMALS) throw damaged();
     return this.signed() / 10 ** decimals;
+  }
+
+  /** A reader of what {@link ByteWriter.part} wrote. */
+  part(): ByteReader {
+    const length = this.whole();
+    if (this.#at + length > this.bytes.length) throw damaged();
+    return new ByteReader(this.bytes.subarray(this.#at, (this.#at += length)));
   }
 
   text(): string {

@@ -1,24 +1,28 @@
 /**
- * A project as the end of an address: `#d=1.` and base64url (RFC 4648, without padding) of
+ * A project as the end of an address: `#d=`, a version, a full stop, and base64url (RFC 4648, without padding) of
  *
  * - the CRC-32 of all that follows, 4 bytes, little-endian: a link that was not copied whole is told from another dance;
  * - raw deflate (RFC 1951) of the parts in `share-parts.ts`.
  *
- * What comes after `#` never reaches a server. Key poses are rounded to 8 bits a number ({@link POSE_STEP}); all else is exact. The
- * camera and the address of the song are left out: a link must not make a page fetch anything from its author's address.
+ * Version 2 has parts that version 1 has no place for; a project without them is written as version 1, which every page reads.
+ *
+ * What comes after `#` never reaches a server. Key poses and starting clips are rounded to 8 bits a number ({@link POSE_STEP}), beats
+ * that a person played to a millisecond; all else is exact. Left out are the camera, a starting clip that is not chosen, and the address
+ * of the song: a link must not make a page fetch anything from its author's address.
  */
 import { deflateSync } from 'fflate';
 import type { ProjectDocument } from '../document';
 import { parseDocument } from '../document-read';
 import { ByteReader, ByteWriter, DamagedBytes } from './byte-pack';
 import { inflateWithin } from './inflate';
-import { POSE_STEP, readParts, writeParts } from './share-parts';
+import { furtherParts, readParts, writeParts } from './share-parts';
+import { POSE_STEP } from './share-pose';
 import { crc32 } from './zip-read';
 
 export { POSE_STEP };
 
-/** Version of the form; it stands in the link itself. */
-const VERSION = 1;
+/** Newest version of the form; it stands in the link itself. */
+const VERSION = 2;
 const LINK = /^#?d=(\d{1,6})\.([A-Za-z0-9_-]*)/;
 /** Longer links are refused before anything is unpacked, characters. */
 const MAX_READ = 100_000;
@@ -49,17 +53,18 @@ export function isLink(hash: string): boolean {
  */
 export function writeLink(document: ProjectDocument, model = ''): string {
   let shortest: Uint8Array | null = null;
+  const further = furtherParts(document);
   // Which order of the poses packs better depends on the poses.
   for (const byJoint of [false, true]) {
     const writer = new ByteWriter();
-    writeParts(writer, document, model.slice(0, 200), byJoint);
+    writeParts(writer, document, model.slice(0, 200), byJoint, further);
     const packed = deflateSync(Uint8Array.from(writer.bytes), { level: 9, mem: 8 });
     if (!shortest || packed.length < shortest.length) shortest = packed;
   }
   const bytes = new Uint8Array(4 + shortest!.length);
   new DataView(bytes.buffer).setUint32(0, crc32(shortest!), true);
   bytes.set(shortest!, 4);
-  return `#d=${VERSION}.${toBase64Url(bytes)}`;
+  return `#d=${further.length > 0 ? 2 : 1}.${toBase64Url(bytes)}`;
 }
 
 /**
@@ -74,10 +79,11 @@ export function readLink(hash: string): SharedProject {
     throw new Error('This link is too long to be a dance: ask for the project as a .posebeat file.');
   }
   if (!found) throw damaged();
-  if (Number(found[1]) > VERSION) {
+  const version = Number(found[1]);
+  if (version > VERSION) {
     throw new Error('This link was made by a newer Posebeat: reload the page to get the newest version.');
   }
-  if (Number(found[1]) !== VERSION) throw damaged();
+  if (version < 1) throw damaged();
   const bytes = fromBase64Url(found[2]);
   if (!bytes || bytes.length < 5) throw damaged();
   const packed = bytes.subarray(4);
@@ -85,8 +91,11 @@ export function readLink(hash: string): SharedProject {
   const parts = inflateWithin(packed, MAX_BYTES);
   if (!parts) throw damaged();
   try {
-    const { document, model } = readParts(new ByteReader(parts));
-    return { ...parseDocument(document), model };
+    const { document, model, unknown } = readParts(new ByteReader(parts), version);
+    const parsed = parseDocument(document);
+    if (unknown)
+      parsed.repairs.push('A newer Posebeat made it, and something of it is not known here: reload the page.');
+    return { ...parsed, model };
   } catch (error) {
     if (error instanceof DamagedBytes) throw damaged();
     throw error;

@@ -3,6 +3,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import { embedSnippet } from '../../app/embed';
 import { SAFE_LINK } from '../../app/actions/share';
 import { messageOf } from '../../app/context';
+import { isPlayed } from '../../core/formats/share-grid';
 import { Icon } from '../Icon';
 import { leaveByEscape } from '../popover';
 import { tip } from '../shortcuts';
@@ -68,6 +69,7 @@ function Panel() {
     }
   });
   const { link, problem } = made.value;
+  const played = document.value.grid !== null && isPlayed(document.value.grid);
   const name = song.value?.demo === false ? song.value.reference.name : null;
   return (
     <div class="share-body">
@@ -86,7 +88,8 @@ function Panel() {
           <Copyable label="Link" text={link} action="Copy the link" />
           {'share' in navigator && <WebShare link={link} />}
           <p class="share-note">
-            Everything is in the link itself: nothing is uploaded. Poses are rounded to about a degree.
+            Everything is in the link itself: nothing is uploaded. Poses are rounded to about a degree
+            {played ? ', beats played by hand to a millisecond' : ''}.
             {name &&
               ` The song is not in it: whoever opens it is asked for “${name}”, and sees the dance to the demo’s song until then.`}
             {link.length > SAFE_LINK &&
