@@ -37,8 +37,8 @@ const offline = VitePWA({
   workbox: {
     globPatterns: ['index.html', 'assets/*.{js,mjs,css}'],
     // Only pages with a graphics processor want the WebGPU build.
-    // So does what makes videos wait for somebody who wants one.
-    globIgnores: ['**/*jspi*', '**/video.worker*'],
+    // So does what makes videos, or opens characters, wait for somebody who wants it.
+    globIgnores: ['**/*jspi*', '**/video.worker*', '**/avatar-open*', '**/three-vrm*', '**/meshopt_decoder*'],
     navigateFallback: 'index.html',
     clientsClaim: true,
     skipWaiting: false,
@@ -50,7 +50,7 @@ const offline = VitePWA({
         handler: 'CacheFirst',
         options: {
           cacheName: 'posebeat-assets',
-          expiration: { maxEntries: 12 },
+          expiration: { maxEntries: 20 },
           cacheableResponse: { statuses: [200] },
         },
       },

@@ -7,7 +7,7 @@ import { gltfParts } from './avatar-file';
 import type { AvatarMapping, BoneChoice } from './avatar-state';
 
 export { openAvatar } from '../scene/avatar';
-export { AVATAR_JOINTS };
+export { AVATAR_JOINTS, guessBones };
 
 /** A file that was looked through. */
 export interface CharacterFile {
@@ -69,13 +69,4 @@ export function bonesByName(rig: AvatarRig, guess: BoneMap, bones: Readonly<Reco
 /** True for a map that can only have come from this file. */
 export function mapFits(rig: AvatarRig, map: readonly number[]): boolean {
   return NEEDED_JOINTS.every((joint) => map[joint] >= 0) && map.every((node) => node < rig.names.length);
-}
-
-/** The guess for a character that was opened before; null where there is none any more. */
-export function guessFor(rig: AvatarRig): BoneMap | null {
-  try {
-    return guessBones(rig).bones;
-  } catch {
-    return null;
-  }
 }

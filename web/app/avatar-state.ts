@@ -27,6 +27,8 @@ export interface AvatarMapping extends AvatarInUse {
   map: readonly number[];
   /** What was guessed from names and places. */
   guess: readonly number[];
+  /** The names said nothing: the guess is from places alone. */
+  byShape: boolean;
   /** For each joint what is wrong with it, in a few words; null = nothing. */
   problems: readonly (string | null)[];
   /** What is wrong with the whole. */

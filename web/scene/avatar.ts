@@ -1,5 +1,5 @@
 /** A character of the visitor's own that dances in the place of our figure: the file's objects, moved by what our dance means for its bones. */
-import { Group, Mesh, MeshBasicMaterial, SphereGeometry, type Object3D } from 'three';
+import { Box3, Group, Mesh, MeshBasicMaterial, SphereGeometry, type Object3D } from 'three';
 import { AvatarRetargeter, type AvatarFrame } from '../core/avatar/retarget';
 import { readAvatarRig, type AvatarRig } from '../core/avatar/rig';
 import { REST } from '../core/rest';
@@ -21,6 +21,8 @@ export const OWN_HEIGHT = REST[jointIndex('head') * 3 + 1] + 0.19;
 
 /** A longer step than this is a jump to another place of the dance, seconds. */
 const LONGEST_STEP = 0.25;
+/** With hair and hat nobody is taller than this many times the body. */
+const MOST_HAIR = 1.6;
 /** After a jump hair and skirts fall for this many steps of a thirtieth of a second. */
 const SETTLING_STEPS = 15;
 
@@ -45,6 +47,8 @@ export class AvatarFigure {
   private last: FramePose | null = null;
   private dot: Mesh | null = null;
   private marked: number | null = null;
+  /** From the soles to the top of hair and hat, the file's units. */
+  private readonly extent: number;
   /** The nodes as the file has them. */
   private readonly rest: ReadonlyMap<Object3D, { position: number[]; turn: number[] }>;
 
@@ -58,12 +62,18 @@ export class AvatarFigure {
     this.rest = new Map(
       objects.map((node) => [node, { position: node.position.toArray(), turn: node.quaternion.toArray() }]),
     );
+    const { min, max } = new Box3().setFromObject(loaded.scene);
+    this.extent = max.y - min.y;
     this.setMap(map);
   }
 
-  /** Metres on the stage. */
+  /** Metres on the stage, with hair and hat. */
   get height(): number {
-    return this.retargeter ? this.retargeter.height * this.retargeter.displayScale : OWN_HEIGHT;
+    if (!this.retargeter) return OWN_HEIGHT;
+    const { height, displayScale } = this.retargeter;
+    // A file that lies down, or brings a room along, is no taller for it.
+    const whole = this.extent > height && this.extent < height * MOST_HAIR ? this.extent : height;
+    return whole * displayScale;
   }
 
   /** Its height over our figure's. */

@@ -4,7 +4,7 @@ import { openFile } from './files';
 import { Icon } from './Icon';
 import { useStore } from './store-context';
 
-/** Anywhere on the page is a place to drop a song. */
+/** Anywhere on the page is a place to drop a song, a character or whatever else can be opened. */
 export function DropOverlay() {
   const store = useStore();
   const over = useSignal(false);
@@ -40,7 +40,8 @@ export function DropOverlay() {
   return (
     <div class="drop-overlay" aria-hidden="true">
       <Icon name="music" size={48} />
-      <strong>Let go to dance to it</strong>
+      <strong>Let go to dance with it</strong>
+      <small>A song, a character, a motion or a project</small>
     </div>
   );
 }

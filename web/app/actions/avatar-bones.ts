@@ -1,4 +1,5 @@
 /** The question which bone of a character is which of our joints; the character on the stage shows every answer at once. */
+import type { BoneGuess } from '../../core/avatar/guess';
 import type * as avatarOpen from '../avatar-open';
 import type { AvatarInUse, AvatarMapping } from '../avatar-state';
 import type { Context } from '../context';
@@ -14,7 +15,7 @@ export function bonesActions(
   let parts: Opener | null = null;
 
   /** Opens the dialog with a guess filled in. */
-  async function askBones(avatar: AvatarInUse, guess: readonly number[]): Promise<void> {
+  async function askBones(avatar: AvatarInUse, { bones: guess, by }: BoneGuess): Promise<void> {
     parts = await opener();
     const { rig } = avatar.figure;
     const map = [...avatar.source.map];
@@ -24,6 +25,7 @@ export function bonesActions(
       joints: parts.AVATAR_JOINTS,
       map,
       guess,
+      byShape: by === 'shape',
       ...parts.judgeBones(rig, map),
       joint: null,
     };
@@ -42,8 +44,8 @@ export function bonesActions(
     async checkBones(): Promise<void> {
       const avatar = state.avatar.value;
       if (!avatar) return;
-      const guess = (await opener()).guessFor(avatar.figure.rig);
-      if (state.avatar.value === avatar) await askBones(avatar, guess ?? avatar.source.map);
+      const guess = (await opener()).guessBones(avatar.figure.rig);
+      if (state.avatar.value === avatar) await askBones(avatar, guess);
     },
 
     /** Gives a joint of ours another bone; -1 = none. */

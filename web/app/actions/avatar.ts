@@ -1,4 +1,5 @@
 /** Characters of the visitor's own: opened, kept, chosen. They belong to this browser, not to the project. */
+import type { BoneGuess } from '../../core/avatar/guess';
 import type { AvatarFigure } from '../../scene/avatar';
 import { gltfParts, mayBeAvatar } from '../avatar-file';
 import type * as avatarOpen from '../avatar-open';
@@ -19,7 +20,7 @@ export interface SetAvatarOptions {
 
 /** A file that is open and not used yet. */
 interface Opened extends AvatarInUse {
-  guess: number[];
+  guess: BoneGuess;
   /** Whether the guess is to be looked at before it dances. */
   doubtful: boolean;
 }
@@ -90,7 +91,7 @@ export function avatarActions(context: Context, store: AvatarStore = createAvata
       name,
       source,
       figure,
-      guess: guess.bones,
+      guess,
       doubtful: !usable || (guess.by === 'shape' && !own && !options.bones),
     };
   }
@@ -241,12 +242,12 @@ export function avatarActions(context: Context, store: AvatarStore = createAvata
       if (!(file instanceof Blob)) throw new Error('setAvatar takes a File, a Blob or null.');
       turn += 1;
       const opened = await open(file, options);
-      const { problems } = (await opener()).judgeBones(opened.figure.rig, opened.source.map as number[]);
-      if (opened.doubtful) {
+      const { problems, notes, usable } = (await opener()).judgeBones(opened.figure.rig, [...opened.source.map]);
+      if (!usable) {
         opened.figure.dispose();
-        const wrong = problems.filter((problem) => problem !== null).slice(0, 3);
+        const wrong = [...problems, ...notes].filter((problem) => problem !== null).slice(0, 3);
         throw new Error(
-          `The bones of this character are in doubt${wrong.length > 0 ? `: ${wrong.join(' ')}` : '.'} Say which they are with the option bones.`,
+          `Bones of this character could not be told. ${wrong.join(' ')} Say which they are with the option bones.`,
         );
       }
       use(opened);

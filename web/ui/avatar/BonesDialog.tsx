@@ -38,7 +38,7 @@ export function BonesDialog() {
 
 function Contents({ mapping }: { mapping: AvatarMapping }) {
   const store = useStore();
-  const { name, map, guess, joints: known, problems, notes, usable } = mapping;
+  const { name, map, guess, joints: known, problems, notes, usable, byShape } = mapping;
   const wrong = problems.filter((problem) => problem !== null).length;
   const changed = map.some((node, joint) => node !== guess[joint]);
   return (
@@ -54,9 +54,11 @@ function Contents({ mapping }: { mapping: AvatarMapping }) {
       </p>
       <p class={`bones-state ${wrong > 0 ? 'wrong' : ''}`} role="status">
         <Icon name={wrong > 0 ? 'warning' : 'check'} size={16} />
-        {wrong === 0
-          ? 'Every bone that is needed has been found.'
-          : `${wrong === 1 ? 'One joint needs' : `${wrong} joints need`} a look.`}
+        {wrong > 0
+          ? `${wrong === 1 ? 'One joint needs' : `${wrong} joints need`} a look.`
+          : byShape
+            ? 'Its names say nothing: the bones were told by where they are.'
+            : 'Every bone that is needed has been found.'}
       </p>
       {notes.map((note) => (
         <p key={note} class="bones-state wrong">
@@ -77,14 +79,16 @@ function Contents({ mapping }: { mapping: AvatarMapping }) {
         ))}
       </div>
       <div class="bones-foot">
-        <button type="button" class="quiet" disabled={!changed} onClick={() => store.guessBones()}>
-          Back to the guess
-        </button>
+        {changed && (
+          <button type="button" class="quiet" onClick={() => store.guessBones()}>
+            Back to the guess
+          </button>
+        )}
         <button type="button" class="secondary" onClick={() => store.cancelBones()}>
           Cancel
         </button>
         <button type="submit" class="primary motion-tone" disabled={!usable}>
-          Dance with these bones
+          Use these bones
         </button>
       </div>
     </form>
@@ -104,6 +108,7 @@ function BoneField({ joint, mapping }: { joint: number; mapping: AvatarMapping }
         value={String(map[joint])}
         aria-invalid={problem !== null}
         aria-describedby={problem ? `${id}-problem` : undefined}
+        autofocus={joint === 0}
         onFocus={() => store.pointAtBone(joint)}
         onBlur={() => store.pointAtBone(null)}
         onChange={(event) => store.chooseBone(joint, Number(event.currentTarget.value))}
