@@ -40,7 +40,8 @@ export default defineConfig({
     {
       name: 'stage',
       testMatch: STAGE,
-      use: { launchOptions: launch('--enable-unsafe-swiftshader') },
+      // A quarter of the pixels, the same layout.
+      use: { deviceScaleFactor: 0.5, launchOptions: launch('--enable-unsafe-swiftshader') },
     },
     {
       name: 'webgpu',

@@ -7,10 +7,6 @@ import { serveTinyModel } from './support/tiny';
 
 test.use({ viewport: { width: 1440, height: 900 } });
 
-test.beforeEach(async ({ page }) => {
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
-});
-
 /** Marks what the Tab key should come to: everything that can be used and be seen, of a group of radio buttons the checked one. */
 const wanted = (page: Page) =>
   page.evaluate(() => {

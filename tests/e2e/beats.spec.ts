@@ -1,6 +1,7 @@
 import { expect, test, type Page } from '@playwright/test';
-import { collectErrors, fourPoses, loadSong, open } from './support/page';
+import { collectErrors, fourPoses, loadSong, open, reload, saved } from './support/page';
 import { wav } from './support/songs';
+import { tapAlong } from './support/taps';
 
 test.use({ viewport: { width: 1440, height: 900 } });
 
@@ -25,19 +26,6 @@ const inMenu = async (page: Page, name: string): Promise<void> => {
   await menuItem(page, name).click();
   await page.keyboard.press('Escape');
 };
-
-/** Presses T evenly; each press is stamped with the moment it is meant for, as a keyboard does it, however busy the machine is. */
-async function tapAlong(page: Page, taps: number, seconds: number): Promise<void> {
-  const keyboard = await page.context().newCDPSession(page);
-  const key = { key: 't', code: 'KeyT', text: 't', windowsVirtualKeyCode: 84 };
-  const started = Date.now() / 1000;
-  for (let i = 1; i <= taps; i += 1) {
-    const timestamp = started + i * seconds;
-    await page.waitForTimeout(Math.max(0, (timestamp - Date.now() / 1000) * 1000));
-    await keyboard.send('Input.dispatchKeyEvent', { type: 'keyDown', timestamp, ...key });
-    await keyboard.send('Input.dispatchKeyEvent', { type: 'keyUp', timestamp, ...key });
-  }
-}
 
 async function drag(page: Page, selector: string, dx: number, modifier?: 'Shift' | 'Alt'): Promise<void> {
   const box = (await page.locator(selector).boundingBox())!;
@@ -80,13 +68,11 @@ test('tapping along with the song puts a halved tempo right', async ({ page }) =
 test('Escape cancels tapping, and leaves the menu with the keyboard back on its button', async ({ page }) => {
   await song(page);
   await page.keyboard.press('t');
-  for (let i = 0; i < 5; i += 1) {
-    await page.waitForTimeout(300);
-    await page.keyboard.press('t');
-  }
+  for (let i = 0; i < 5; i += 1) await page.keyboard.press('t');
   await page.keyboard.press('Escape');
   await expect(page.locator('.tap-text')).toHaveText('Tap');
-  await page.waitForTimeout(3000);
+  // Longer than a page waits for one more tap.
+  await page.waitForTimeout(2600);
   expect(await grid(page)).toBeNull();
 
   const button = page.getByRole('button', { name: 'Beats', exact: true });
@@ -224,10 +210,8 @@ test('the part to dance to is set by drag and keyboard, kept to by the player, a
 
   await page.keyboard.press(']');
   const kept = await project(page);
-  await page.waitForTimeout(1500);
-  await page.reload();
-  await page.waitForFunction(() => 'posebeat' in window);
-  await page.evaluate(() => window.posebeat.ready);
+  await saved(page);
+  await reload(page);
   const again = await project(page);
   expect(again.trim).toEqual(kept.trim);
   expect(again.grid).toEqual(kept.grid);

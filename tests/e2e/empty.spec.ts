@@ -6,10 +6,6 @@ import { dismissAll } from './support/states';
 
 test.use({ viewport: { width: 1440, height: 900 }, contextOptions: { reducedMotion: 'reduce' } });
 
-test.beforeEach(async ({ page }) => {
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
-});
-
 const tab = (page: Page, name: string) => page.getByRole('tab', { name }).click();
 
 test('without a song, and without the demo, every panel says how to begin', async ({ page }) => {

@@ -2,7 +2,7 @@
 import { readFileSync } from 'node:fs';
 import { expect, test, type Page } from '@playwright/test';
 import { collectErrors, loadSong, open } from './support/page';
-import { alongTheArm, figure, findJoint, newPose } from './support/posing';
+import { alongTheArm, figure, findJoint, newPose, poseAtRest } from './support/posing';
 import { wav } from './support/songs';
 
 const spec = JSON.parse(readFileSync(new URL('../../web/core/spec.json', import.meta.url), 'utf8')) as {
@@ -12,10 +12,6 @@ const joint = (page: Page) => page.getByLabel('Joint', { exact: true });
 
 // A small stage: without a graphics card every pixel costs.
 test.use({ viewport: { width: 960, height: 640 } });
-
-test.beforeEach(async ({ page }) => {
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
-});
 
 /** The pose on the timeline, as one angle per joint, degrees. */
 async function addAndRead(page: Page): Promise<(name: string) => number> {
@@ -38,8 +34,6 @@ test('a hand is dragged by its dot; Esc takes the drag back', async ({ page }) =
   const errors = collectErrors(page);
   await startMoving(page);
   const wrist = await findJoint(page, 'Left wrist', alongTheArm('right'));
-  await page.mouse.move(wrist.x, wrist.y);
-
   await page.mouse.down();
   await page.mouse.move(wrist.x - 20, wrist.y + 60, { steps: 5 });
   await page.keyboard.press('Escape');
@@ -50,7 +44,7 @@ test('a hand is dragged by its dot; Esc takes the drag back', async ({ page }) =
   await page.mouse.move(wrist.x, wrist.y);
   await page.mouse.down();
   await page.mouse.move(wrist.x - 76, wrist.y - 30, { steps: 8 });
-  await page.waitForTimeout(500);
+  await poseAtRest(page);
   await page.mouse.up();
   await expect(page.getByRole('button', { name: 'Undo' })).toBeEnabled();
 
@@ -67,8 +61,7 @@ test('arrow keys move the hips, and the knees bend over standing feet', async ({
   await joint(page).selectOption({ value: '0' });
   await figure(page).focus();
   for (let i = 0; i < 3; i++) await page.keyboard.press('Shift+ArrowDown');
-  // Quick presses are one step, which is kept after a moment.
-  await page.waitForTimeout(900);
+  await poseAtRest(page);
   const angle = await addAndRead(page);
   expect(angle('left_knee')).toBeGreaterThan(25);
   expect(Math.abs(angle('left_knee') - angle('right_knee'))).toBeLessThan(10);

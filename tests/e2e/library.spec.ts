@@ -13,7 +13,6 @@ const own = (page: Page) => page.getByRole('list', { name: 'My poses' });
 const tile = (page: Page, name: string) => page.getByRole('button', { name: `${name}: add at the playhead` });
 
 async function openWithSong(page: Page): Promise<void> {
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
   await open(page);
   await loadSong(page, wav({ seconds: 12 }));
 }

@@ -1,5 +1,5 @@
 import { expect, test } from '@playwright/test';
-import { collectErrors, loadSong, open } from './support/page';
+import { collectErrors, loadSong, open, reload, saved } from './support/page';
 import { wav } from './support/songs';
 
 test('the page opens on a demo that is already dancing, with neither model nor runtime loaded', async ({ page }) => {
@@ -30,7 +30,6 @@ test('the help overlay lists the shortcuts and Escape closes it', async ({ page 
 });
 
 test('where the camera stands is found again after a reload, and undo does not move it', async ({ page }) => {
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
   await page.setViewportSize({ width: 800, height: 600 });
   await open(page);
   await loadSong(page, wav({ seconds: 4 }));
@@ -50,7 +49,6 @@ test('where the camera stands is found again after a reload, and undo does not m
     await page.mouse.up();
     // Kept when the camera has come to rest.
     await expect.poll(async () => JSON.stringify(await camera())).not.toBe(before);
-    await page.waitForTimeout(600);
   };
   expect(await camera()).toBeNull();
   await orbit(80);
@@ -60,12 +58,11 @@ test('where the camera stands is found again after a reload, and undo does not m
   await page.keyboard.press('Control+z');
   expect(await heading()).toBe(turned);
 
-  await page.waitForTimeout(1500);
-  await page.reload();
-  await page.evaluate(() => window.posebeat.ready);
+  await saved(page);
+  await reload(page);
   expect(await heading()).toBe(turned);
   // The stage itself looks from there: the same way back ends where it began.
-  await page.waitForTimeout(1500);
+  await page.locator('.stage canvas').waitFor();
   await orbit(-80);
   expect(Math.abs(await heading())).toBeLessThan(Math.abs(turned) / 3);
   await page.getByRole('button', { name: 'Show the whole figure' }).click();

@@ -1,6 +1,6 @@
 import { expect, test, type Page } from '@playwright/test';
 import { collectErrors, loadSong, open } from './support/page';
-import { alongTheArm, figure, findJoint, newPose } from './support/posing';
+import { alongTheArm, figure, findJoint, newPose, poseAtRest } from './support/posing';
 import { wav } from './support/songs';
 
 const keyPoses = (page: Page) => page.evaluate(() => window.posebeat.document().keyPoses);
@@ -9,10 +9,6 @@ const angles = (page: Page) =>
   Promise.all(['x', 'y', 'z'].map(async (axis) => Number(await page.getByLabel(`Turn ${axis}, degrees`).inputValue())));
 // A small stage: without a graphics card every pixel costs.
 test.use({ viewport: { width: 960, height: 640 } });
-
-test.beforeEach(async ({ page }) => {
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
-});
 
 test('by mouse: a joint is clicked on the figure, turned by a ring, undone, redone and kept', async ({ page }) => {
   const errors = collectErrors(page);
@@ -68,12 +64,18 @@ test('by keyboard alone: a pose is made, copied, varied, undone to the start, re
 
   const states: number[][] = [await angles(page)];
   await page.keyboard.press('ArrowLeft');
-  // Quick presses are one step; these are two.
-  await page.waitForTimeout(700);
+  // Quick presses are one step; another joint in between makes them two.
+  const elsewhereAndBack = async () => {
+    await page.keyboard.press('Control+ArrowUp');
+    await expect(joint(page)).not.toHaveValue('18');
+    await page.keyboard.press('Control+ArrowDown');
+    await expect(joint(page)).toHaveValue('18');
+  };
+  await elsewhereAndBack();
   states.push(await angles(page));
   expect(states[1][1]).toBeCloseTo(-5, 0);
   await page.keyboard.press('Shift+ArrowLeft');
-  await page.waitForTimeout(700);
+  await elsewhereAndBack();
   states.push(await angles(page));
   expect(states[2][1]).toBeCloseTo(-20, 0);
 
@@ -105,10 +107,9 @@ test('a hand is dragged and the body follows; a place is typed in centimetres', 
   await newPose(page);
   await page.keyboard.press('w');
   const wrist = await findJoint(page, 'Left wrist', alongTheArm('right'));
-  await page.mouse.move(wrist.x, wrist.y);
   await page.mouse.down();
   await page.mouse.move(wrist.x - 30, wrist.y + 60, { steps: 6 });
-  await page.waitForTimeout(500);
+  await poseAtRest(page);
   await page.mouse.up();
   await joint(page).selectOption({ label: 'Left elbow' });
   await page.keyboard.press('Escape');

@@ -12,7 +12,6 @@ const keys = (page: Page) => page.evaluate(() => window.posebeat.document().keyP
 const tiles = (page: Page) => page.locator('.pose-tile');
 
 async function openWithSong(page: Page): Promise<number[]> {
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
   await open(page);
   return (await loadSong(page, wav({ seconds: 12 }))).beats;
 }

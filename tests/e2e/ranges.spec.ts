@@ -1,5 +1,5 @@
 import { expect, test, type Page } from '@playwright/test';
-import { collectErrors, fourPoses, loadSong, open } from './support/page';
+import { collectErrors, fourPoses, loadSong, open, reload, saved } from './support/page';
 import { wav } from './support/songs';
 
 test.use({ viewport: { width: 1440, height: 900 } });
@@ -134,11 +134,8 @@ test('bars 5 to 8 are made anew, takes are switched by mouse and keyboard, all i
   await page.evaluate(() => window.posebeat.generate());
   expect(apart(await now(page), last, 0, FRAMES)).toBe(0);
 
-  // Work is kept a moment after the last change.
-  await page.waitForTimeout(1500);
-  await page.reload();
-  await page.waitForFunction(() => 'posebeat' in window);
-  await page.evaluate(() => window.posebeat.ready);
+  await saved(page, { dance: true });
+  await reload(page);
   await expect(chip).toHaveText('2/2');
   await calm(page);
   const back = await now(page);

@@ -1,8 +1,9 @@
 /** The whole way through the studio, once by mouse and once by keyboard alone: from a song to a dance, back to the start and on again. */
 import { expect, test, type Page } from '@playwright/test';
-import { collectErrors, open } from './support/page';
-import { alongTheArm, figure, findJoint, newPose } from './support/posing';
+import { collectErrors, open, reload, saved } from './support/page';
+import { alongTheArm, figure, findJoint, newPose, poseAtRest } from './support/posing';
 import { wav } from './support/songs';
+import { tapAlong } from './support/taps';
 
 // Without a graphics card every pixel of the stage costs.
 test.use({ viewport: { width: 1200, height: 720 } });
@@ -26,33 +27,26 @@ const dance = (page: Page) =>
 const undoButton = (page: Page) => page.getByRole('banner').getByRole('button', { name: 'Undo' });
 const redoButton = (page: Page) => page.getByRole('banner').getByRole('button', { name: 'Redo' });
 
-async function picture(page: Page, name: string): Promise<void> {
-  await page.waitForTimeout(400);
-  await page.screenshot({ path: test.info().outputPath(`${name}.png`) });
-}
-
 /** Waits until nothing is being made and the dance is up to date. */
 async function calm(page: Page): Promise<void> {
   await expect(page.locator('.generate.busy')).toHaveCount(0, { timeout: 90_000 });
   await expect(page.locator('.generate')).toHaveClass(/fresh/);
 }
 
-/** Eight taps on every second beat while the song plays: half of the tempo that was heard. A busy machine taps unevenly: once more, then. */
-async function tap(page: Page, press: () => Promise<void>): Promise<void> {
-  await press(); // starts the song
+/** Eight taps on every second beat while the song plays: half of the tempo that was heard. By key, or by mouse. */
+async function tap(page: Page, at?: { x: number; y: number }): Promise<void> {
+  // The first only starts the song.
+  if (at) await page.mouse.click(at.x, at.y);
+  else await page.keyboard.press('t');
   await expect(page.getByRole('button', { name: 'Pause' })).toBeVisible();
-  for (let attempt = 0; attempt < 4; attempt++) {
-    const started = Date.now();
-    for (let i = 1; i <= 8; i++) {
-      await page.waitForTimeout(Math.max(0, started + i * BEAT * 1000 - Date.now()));
-      await press();
-    }
+  // A page that heard nothing for a second takes a tap for a later one: once more, then, as anybody would.
+  for (let attempt = 0; attempt < 3; attempt++) {
+    if (attempt > 0) await page.keyboard.press('Control+z');
+    await tapAlong(page, 8, BEAT, at);
     await expect(page.locator('.tap-text')).toHaveText('Tap');
-    const { grid } = await project(page);
-    if (grid && Math.abs(grid.tempo - TEMPO / 2) < 2) return;
-    if (grid) await page.keyboard.press('Control+z');
+    if (Math.abs((await project(page)).grid!.tempo - TEMPO / 2) < 2) return;
   }
-  throw new Error(`Four times eight even taps never gave ${TEMPO / 2} beats a minute.`);
+  throw new Error(`Three times eight even taps never gave ${TEMPO / 2} beats a minute.`);
 }
 
 /** All steps back and all steps on again: the same documents in between, to the last bit, and the same dance. */
@@ -62,7 +56,6 @@ async function thereAndBack(page: Page, undo: () => Promise<void>, redo: () => P
   const before = [last];
   while (await undoButton(page).isEnabled()) {
     await undo();
-    await page.waitForTimeout(60);
     before.push(await project(page));
     expect(before.length, 'steps back').toBeLessThan(80);
   }
@@ -70,7 +63,6 @@ async function thereAndBack(page: Page, undo: () => Promise<void>, redo: () => P
   expect(before.at(-1)!.keyPoses.map(({ name }) => name)).not.toContain('Reach');
   for (let step = before.length - 2; step >= 0; step--) {
     await redo();
-    await page.waitForTimeout(60);
     expect(await project(page)).toEqual(before[step]);
   }
   await expect(redoButton(page)).toBeDisabled();
@@ -78,10 +70,8 @@ async function thereAndBack(page: Page, undo: () => Promise<void>, redo: () => P
   expect(await dance(page)).toEqual(danced);
 
   // What was kept is there after a reload.
-  await page.waitForTimeout(1500);
-  await page.reload();
-  await page.waitForFunction(() => 'posebeat' in window);
-  await page.evaluate(() => window.posebeat.ready);
+  await saved(page, { dance: true });
+  await reload(page);
   expect(await project(page)).toEqual(last);
   await calm(page);
   expect(await dance(page)).toEqual(danced);
@@ -104,10 +94,7 @@ async function checkProject(page: Page): Promise<void> {
 
 test('by mouse', async ({ page }) => {
   const errors = collectErrors(page);
-  await open(page, '?backend=wasm', { smooth: true });
-  const skip = page.getByRole('button', { name: 'Skip' });
-  if (await skip.isVisible()) await skip.click();
-  await picture(page, '1-open');
+  await open(page, '?backend=wasm');
 
   const { name, mimeType, buffer } = song();
   const transfer = await page.evaluateHandle(
@@ -123,28 +110,19 @@ test('by mouse', async ({ page }) => {
     await page.locator('.stage').dispatchEvent(type, { dataTransfer: transfer });
   await expect(page.locator('.song-title')).toContainText('long road.wav');
   await expect(page.getByRole('button', { name: 'Beats', exact: true })).toBeEnabled({ timeout: 60_000 });
-  await picture(page, '2-song');
 
   const tapButton = (await page.locator('.bar-button.tap').boundingBox())!;
-  await page.mouse.move(tapButton.x + 20, tapButton.y + tapButton.height / 2);
-  await tap(page, async () => {
-    await page.mouse.down();
-    await page.mouse.up();
-  });
-  const pause = page.getByRole('button', { name: 'Pause' });
-  // After several rounds of taps the song may be over by itself.
-  if (await pause.isVisible()) await pause.click();
-  await picture(page, '3-tapped');
+  await tap(page, { x: tapButton.x + 20, y: tapButton.y + tapButton.height / 2 });
+  await page.getByRole('button', { name: 'Pause' }).click();
 
   await newPose(page);
   await page.getByRole('button', { name: 'Move joints' }).click();
   const wrist = await findJoint(page, 'Left wrist', alongTheArm('right'));
-  await page.mouse.move(wrist.x, wrist.y);
   await page.mouse.down();
   await page.mouse.move(wrist.x - 40, wrist.y - 60, { steps: 6 });
   await page.mouse.move(wrist.x - 70, wrist.y - 120, { steps: 6 });
+  await poseAtRest(page);
   await page.mouse.up();
-  await picture(page, '4-inverse-kinematics');
   await page.getByRole('button', { name: 'Turn joints' }).click();
   const elbow = await findJoint(page, 'Right elbow', alongTheArm('left'));
   await page.mouse.click(elbow.x, elbow.y);
@@ -155,7 +133,6 @@ test('by mouse', async ({ page }) => {
   await page.mouse.move(elbow.x - radius * 0.9, elbow.y - radius * 0.5, { steps: 4 });
   await page.mouse.up();
   await page.getByRole('button', { name: 'Mirror', exact: true }).first().click();
-  await picture(page, '5-mirrored');
   await page.getByLabel('Name of the pose').click();
   await page.keyboard.type('Reach');
   await page.getByRole('button', { name: 'Save', exact: true }).click();
@@ -178,11 +155,9 @@ test('by mouse', async ({ page }) => {
     await page.mouse.up();
     expect((await project(page)).keyPoses).toHaveLength(bar + 1);
   }
-  await picture(page, '6-eight-poses');
 
   await page.locator('.generate').click();
   await calm(page);
-  await picture(page, '7-dance');
 
   const { grid } = await project(page);
   const x = (time: number) => lane.x + 30 + (time / SECONDS) * (lane.width - 60);
@@ -203,7 +178,6 @@ test('by mouse', async ({ page }) => {
   await tools.getByRole('button', { name: 'Previous take of the range' }).click();
   await expect(chip).toHaveText('1/2');
   await calm(page);
-  await picture(page, '8-takes');
   await checkProject(page);
 
   await thereAndBack(
@@ -211,7 +185,6 @@ test('by mouse', async ({ page }) => {
     () => undoButton(page).click(),
     () => redoButton(page).click(),
   );
-  await picture(page, '9-back');
   expect(errors).toEqual([]);
 });
 
@@ -239,12 +212,9 @@ test('by keyboard alone', async ({ page }) => {
   await expect(page.locator('.song-title')).toContainText('long road.wav');
   await expect(page.getByRole('button', { name: 'Beats', exact: true })).toBeEnabled({ timeout: 60_000 });
 
-  await tap(page, () => press('t'));
-  // After several rounds of taps the song may be over by itself.
-  if (await page.getByRole('button', { name: 'Pause' }).isVisible()) {
-    await tabTo('.transport .play');
-    await press('Enter');
-  }
+  await tap(page);
+  await tabTo('.transport .play');
+  await press('Enter');
   await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
 
   await tabTo('[role=tab][aria-selected=true]');
@@ -260,12 +230,11 @@ test('by keyboard alone', async ({ page }) => {
   await expect(joint).toHaveValue('20');
   await press('w');
   await press('ArrowUp', 12);
-  await page.waitForTimeout(700);
+  await poseAtRest(page);
   await press('e');
   await press('Control+ArrowUp');
   await expect(joint).toHaveValue('18');
   await press('ArrowLeft', 4);
-  await page.waitForTimeout(700);
   await press('m');
   await tabTo('.save-draft input');
   await page.keyboard.type('Reach');
@@ -275,17 +244,25 @@ test('by keyboard alone', async ({ page }) => {
   await expect(figure(page)).toHaveCount(0);
 
   await press('0');
-  for (let bar = 0; bar < 8; bar++) {
-    await tabTo('[role=slider].playhead-grip', bar > 0);
+  const toBar = async (bar: number) => {
     await press('Home');
     await press('PageDown', bar);
     await press('ArrowRight', 2);
+  };
+  for (let bar = 0; bar < 3; bar++) {
+    await tabTo('[role=slider].playhead-grip', bar > 0);
+    await toBar(bar);
     await tabTo('.pose-tile[tabindex="0"]');
-    if (bar === 1) {
-      // From the own pose into the library.
-      await press('ArrowDown');
-    } else if (bar > 1) await press('ArrowRight');
+    // From the own pose into the library, and on in it.
+    if (bar > 0) await press(bar === 1 ? 'ArrowDown' : 'ArrowRight');
     await press('Enter');
+    expect((await project(page)).keyPoses).toHaveLength(bar + 1);
+  }
+  await press('Control+c');
+  await tabTo('[role=slider].playhead-grip', true);
+  for (let bar = 3; bar < 8; bar++) {
+    await toBar(bar);
+    await press('Control+v');
     expect((await project(page)).keyPoses).toHaveLength(bar + 1);
   }
   await press('Escape');

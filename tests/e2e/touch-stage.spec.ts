@@ -27,7 +27,10 @@ async function stagePicture(page: Page): Promise<Buffer> {
   const canvas = page.locator('.stage canvas');
   let before = await canvas.screenshot();
   for (let attempt = 0; attempt < 30; attempt++) {
-    await page.waitForTimeout(500);
+    // What moves is drawn with every frame, however long that takes.
+    await page.evaluate(async () => {
+      for (let frame = 0; frame < 6; frame++) await new Promise(requestAnimationFrame);
+    });
     const now = await canvas.screenshot();
     if (now.equals(before)) return now;
     before = now;

@@ -14,7 +14,7 @@ const OFFER = 2000;
 test('four steps come by themselves, go on with what is really done, and do not come again', async ({ page }) => {
   const errors = collectErrors(page);
   await serveTinyModel(page);
-  await open(page, '?backend=wasm');
+  await open(page, '?backend=wasm', { tour: true });
   await expect(card(page)).toContainText('1 of 4');
   await expect(card(page)).toContainText('Start with your song');
   await dismissAll(page);
@@ -51,7 +51,7 @@ test('four steps come by themselves, go on with what is really done, and do not 
 });
 
 test('it can be skipped for good and reopened: by key, from the help, read to its end', async ({ page }) => {
-  await open(page);
+  await open(page, '', { tour: true });
   await expect(card(page)).toContainText('1 of 4');
   await page.getByRole('button', { name: 'Skip the tour' }).click();
   await expect(card(page)).toHaveCount(0);

@@ -167,7 +167,6 @@ async function lookAround(page: Page): Promise<void> {
 test('undo and redo of every durable change in one session', async ({ page }) => {
   test.setTimeout(240_000);
   const errors = collectErrors(page);
-  await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
   await serveTinyModel(page);
   await open(page, '?backend=wasm');
   await loadSong(page, wav({ seconds: 16 }), 'session.wav');

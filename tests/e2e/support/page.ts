@@ -22,9 +22,21 @@ async function withoutSmoothing(page: Page): Promise<void> {
   });
 }
 
-/** Opens the page and waits until its API is ready; `smooth` where pictures are to be looked at. */
-export async function open(page: Page, query = '', { smooth = false } = {}): Promise<void> {
+/** The walk-through of a first visit comes a moment after the page, between the pointer and what a test aims at. */
+async function withoutTour(page: Page): Promise<void> {
+  await page.addInitScript(() => {
+    try {
+      localStorage.setItem('posebeat.tour', 'seen');
+    } catch {
+      // Where nothing is kept it comes.
+    }
+  });
+}
+
+/** Opens the page and waits until its API is ready; `smooth` where pictures are to be looked at, `tour` as for a first visit. */
+export async function open(page: Page, query = '', { smooth = false, tour = false } = {}): Promise<void> {
   if (!smooth) await withoutSmoothing(page);
+  if (!tour) await withoutTour(page);
   await page.goto(`./${query}`);
   await page.waitForFunction(() => 'posebeat' in window);
   await page.evaluate(() => window.posebeat.ready);

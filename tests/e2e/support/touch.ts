@@ -30,17 +30,18 @@ export class Fingers {
   /** Presses, moves through points and lifts; every list is one finger's way, all of the same length. Times in milliseconds. */
   async drag(ways: Point[][], { hold = 0, pause = 16 } = {}): Promise<void> {
     const at = (step: number) => ways.map((way, id) => ({ ...way[step], id }));
-    // Fingers keep their own time: on a busy page a swipe is handled late, but it was no slower.
+    // Fingers keep their own time: on a busy page a swipe is handled late, but it was no slower. So nothing waits for an answer.
     let time = Date.now();
-    await this.send('touchStart', at(0), time);
+    const sent = [this.send('touchStart', at(0), time)];
     if (hold > 0) await this.page.waitForTimeout(hold);
     time += hold;
     for (let step = 1; step < ways[0].length; step++) {
       time += Math.max(pause, FASTEST);
-      await this.send('touchMove', at(step), time);
+      sent.push(this.send('touchMove', at(step), time));
       await this.page.waitForTimeout(pause);
     }
-    await this.send('touchEnd', [], time);
+    sent.push(this.send('touchEnd', [], time));
+    await Promise.all(sent);
   }
 
   private async send(
