@@ -20,23 +20,10 @@ const REACH = 1.2;
  * @throws Error with a sentence for the visitor
  */
 export async function loadAvatar(bytes: Uint8Array, isVrm: boolean): Promise<LoadedAvatar> {
-  const manager = new LoadingManager();
-  manager.setURLModifier((url) => {
-    if (!/^(blob|data):/.test(url))
-      throw new Error('This file keeps parts of itself in other files: export it as one .glb file.');
-    return url;
-  });
-  const loader = new GLTFLoader(manager);
-  const [{ MeshoptDecoder }, vrm] = await Promise.all([
-    import('three/addons/libs/meshopt_decoder.module.js'),
-    isVrm ? import('@pixiv/three-vrm') : null,
-  ]);
-  loader.setMeshoptDecoder(MeshoptDecoder);
-  // The bones are moved by us, as they lie in the file.
-  if (vrm) loader.register((parser) => new vrm.VRMLoaderPlugin(parser, { autoUpdateHumanBones: false }));
   let gltf: GLTF;
   try {
-    gltf = await loader.parseAsync(bytes.slice().buffer, '');
+    // Somebody's VRM that three-vrm has something against is a glTF file all the same.
+    gltf = isVrm ? await parse(bytes, true).catch(() => parse(bytes, false)) : await parse(bytes, false);
   } catch (error) {
     throw new Error(`The character could not be read (${shortly(error)}): export it again as a .glb or .vrm file.`, {
       cause: error,
@@ -50,6 +37,23 @@ export async function loadAvatar(bytes: Uint8Array, isVrm: boolean): Promise<Loa
     if (!known || isAbove(object, known)) nodes[node] = object;
   }
   return { scene: gltf.scene, nodes, vrm: (gltf.userData.vrm as VRM | undefined) ?? null };
+}
+
+async function parse(bytes: Uint8Array, isVrm: boolean): Promise<GLTF> {
+  const manager = new LoadingManager();
+  manager.setURLModifier((url) => {
+    if (!/^(blob|data):/.test(url)) throw new Error('it keeps parts of itself in other files');
+    return url;
+  });
+  const loader = new GLTFLoader(manager);
+  const [{ MeshoptDecoder }, vrm] = await Promise.all([
+    import('three/addons/libs/meshopt_decoder.module.js'),
+    isVrm ? import('@pixiv/three-vrm') : null,
+  ]);
+  loader.setMeshoptDecoder(MeshoptDecoder);
+  // The bones are moved by us, as they lie in the file.
+  if (vrm) loader.register((parser) => new vrm.VRMLoaderPlugin(parser, { autoUpdateHumanBones: false }));
+  return loader.parseAsync(bytes.slice().buffer, '');
 }
 
 function shortly(error: unknown): string {
