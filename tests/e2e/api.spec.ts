@@ -1,6 +1,7 @@
 import { expect, test } from '@playwright/test';
 import { collectErrors, fourPoses, loadSong, open, rejection } from './support/page';
 import { wav } from './support/songs';
+import { serveTinyModel } from './support/tiny';
 
 const SONG = { seconds: 12, tempo: 120 };
 const TIMES = [1, 3, 6.5, 9];
@@ -58,6 +59,7 @@ test('a song and four key poses give a dance that hits them', async ({ page }) =
 });
 
 test('the same seed gives the same dance, another seed another', async ({ page }) => {
+  await serveTinyModel(page);
   await open(page, '?backend=wasm');
   await loadSong(page, wav({ seconds: 8 }));
   const dance = (seed: number) =>

@@ -8,8 +8,9 @@ const generate = (page: Page, options = {}) => page.evaluate((options) => window
 test('the weights are downloaded once: the second visit takes them from the cache', async ({ page }) => {
   const weights: string[] = [];
   page.on('request', (request) => {
-    if (request.url().includes('light.onnx')) weights.push(request.url());
+    if (request.url().includes('tiny.onnx')) weights.push(request.url());
   });
+  await serveTinyModel(page);
   for (const visit of [1, 2]) {
     await open(page, '?backend=wasm');
     await loadSong(page, wav({ seconds: 4 }));
@@ -46,7 +47,7 @@ test('an isolated page has threads and says so', async ({ page }) => {
 
 test('cancelling leaves the last good dance, and the page can generate again', async ({ page }) => {
   await open(page, '?backend=wasm');
-  await loadSong(page, wav({ seconds: 20 }));
+  await loadSong(page, wav({ seconds: 12 }));
   await generate(page, { seed: 1 });
   const dance = () => page.evaluate(() => [...window.posebeat.motion().rotations.slice(0, 7200)]);
   const before = await dance();
@@ -55,7 +56,7 @@ test('cancelling leaves the last good dance, and the page can generate again', a
   await page.locator('.generate.busy').click();
   await expect(page.getByRole('button', { name: /generate/i }).last()).toBeEnabled();
   expect(await dance()).toEqual(before);
-  expect(await generate(page, { seed: 1 })).toMatchObject({ frames: 600 });
+  expect(await generate(page, { seed: 1 })).toMatchObject({ frames: 360 });
   expect(await dance()).toEqual(before);
 });
 
@@ -76,6 +77,7 @@ test('a later call cancels an earlier one', async ({ page }) => {
 });
 
 test('a range is made anew and the rest stays as it was, without a pop at its ends', async ({ page }) => {
+  await serveTinyModel(page);
   await open(page, '?backend=wasm');
   await loadSong(page, wav({ seconds: 12 }));
   await generate(page, { seed: 1, variation: 0.5 });

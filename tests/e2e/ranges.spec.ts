@@ -1,6 +1,7 @@
 import { expect, test, type Page } from '@playwright/test';
 import { collectErrors, fourPoses, loadSong, open, reload, saved } from './support/page';
 import { wav } from './support/songs';
+import { serveTinyModel } from './support/tiny';
 
 test.use({ viewport: { width: 1440, height: 900 } });
 
@@ -50,6 +51,7 @@ test('bars 5 to 8 are made anew, takes are switched by mouse and keyboard, all i
 }) => {
   test.setTimeout(300_000);
   const errors = collectErrors(page);
+  await serveTinyModel(page);
   await open(page, '?backend=wasm');
   await loadSong(page, wav(SONG));
   await page.evaluate(
