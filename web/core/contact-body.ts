@@ -16,10 +16,10 @@ export const SOLES = [
 ] as const;
 const FEET = [feet.left, feet.right];
 /** From the ankle, in the foot's axes, metres: level with the toe joint in the rest pose. */
-const HEEL_OFFSET = [0, -0.06, -0.04];
+export const HEEL_OFFSET = [0, -0.06, -0.04];
 
 /** Flesh around joints that may touch the floor in kneeling, lying and hand-stand poses, metres. */
-const RADIUS = new Map(
+export const RADIUS = new Map(
   Object.entries({
     pelvis: 0.1,
     spine2: 0.1,
