@@ -3,8 +3,10 @@ import { CHANNELS, rotationChannel, sampleCurves } from '../../web/core/curves';
 import { CURVE_SIZE, generateCurves, intervalInputs, type CurveRequest } from '../../web/core/curves-dance';
 import { FRAME_FEATURE_SIZE } from '../../web/core/beat-features';
 import { TIMBRE_SIZE } from '../../web/core/mfcc';
-import { consistencyError } from '../../web/core/metrics';
+import { bodyTrack } from '../../web/core/contact-body';
+import { consistencyError, footSkate } from '../../web/core/metrics';
 import { forwardKinematics } from '../../web/core/skeleton';
+import { fourPoses } from '../e2e/support/page';
 import { fakeIntervals } from './support/curves';
 import { danceRequest, key, poseWith } from './dance';
 
@@ -77,6 +79,23 @@ describe('a dance of curves', () => {
     }
     expect(lowest).toBeGreaterThan(-0.01);
     expect(lowest).toBeLessThan(0.05);
+  });
+
+  it('puts its feet down: they slide a third as fast as on the bare curves, and nothing dips below the floor', async () => {
+    const dances = [false, true].map((cleanFeet) =>
+      generateCurves(
+        request(12, {
+          keyPoses: fourPoses().map((pose, i) => key(1.3 + 2 * i, pose)),
+          options: { variation: 0.5, seed: 1, cleanFeet },
+        }),
+        fakeIntervals,
+      ),
+    );
+    const [bare, planted] = (await Promise.all(dances)).map(({ motion }) => motion);
+    expect(footSkate(planted)).toBeLessThan(footSkate(bare) / 3);
+    const { ground } = bodyTrack(planted);
+    const dips = ground.map((y, t) => y - planted.root[t * 3 + 1]);
+    expect(Math.max(...dips)).toBeLessThan(0.003);
   });
 
   it('keeps to the trimmed part and holds still around it', async () => {

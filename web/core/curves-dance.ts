@@ -5,7 +5,6 @@
  */
 import { beatCount } from './beat-count';
 import { FRAME_FEATURE_SIZE, frameFeatures } from './beat-features';
-import { cleanContacts } from './contact';
 import { keysOnFrames, type FrameKey } from './correction';
 import {
   alignKnots,
@@ -19,10 +18,9 @@ import {
   type CurveDance,
 } from './curves';
 import { tidyBeat } from './curves-edit';
-import { followMotion } from './curves-fit';
+import { plantCurves } from './curves-feet';
 import { fillerPoses, headingCurve, KEY_DISTANCE, LONGEST_GAP } from './filler';
 import { headingOf } from './localframe';
-import { sliceMotion } from './motion';
 import { turned } from './motion-blend';
 import { slerp } from './rotation';
 import { seedMotion } from './seed';
@@ -146,7 +144,7 @@ export async function generateCurves(
   }
   walk(curves, ways);
   alignKnots(curves);
-  if (request.options.cleanFeet) settle(curves, request, from, to);
+  if (request.options.cleanFeet) plantCurves(curves, frames, from, to);
   return { curves, motion: sampleCurves(curves, spec.fps, frames) };
 }
 
@@ -291,18 +289,4 @@ function walk(curves: CurveDance, ways: readonly Float32Array[]): void {
       for (let c = 0; c < 3; c++) inner[row + c] += (1 - share) * keys[a + c] + share * keys[b + c];
     }
   });
-}
-
-/** Feet on the floor and still where they carry: the curves follow the cleaned dance, key poses of the visitor exact as before. */
-function settle(curves: CurveDance, { frames }: CurveRequest, from: number, to: number): void {
-  const raw = sliceMotion(sampleCurves(curves, spec.fps, frames), from, to);
-  const own = curves.anchors.map((anchor) => typeof anchor === 'string');
-  const frameOfKey = (k: number) => Math.round(curves.times[k] * spec.fps);
-  const keys = own.flatMap((is, k) => (is ? [frameOfKey(k) - from] : []));
-  const clean = sliceMotion(raw, 0, raw.frames);
-  cleanContacts(raw, clean, 0, raw.frames, { keys });
-  const whole = sampleCurves(curves, spec.fps, frames);
-  whole.root.set(clean.root, from * 3);
-  whole.quaternions.set(clean.quaternions, from * POSE);
-  followMotion(curves, whole, own);
 }
