@@ -213,6 +213,8 @@ test('by keyboard alone; Esc gives the focus back', async ({ page }) => {
   await expect(button).toBeFocused();
   const [file] = await Promise.all([page.waitForEvent('download'), page.keyboard.press('Enter')]);
   expect(file.suggestedFilename()).toBe('Warm Circuit.bvh');
+  // The button was away while the file was written: the keyboard is not left on the page behind.
+  await expect(button).toBeFocused();
   await page.keyboard.press('Escape');
   await expect(dialog(page)).toBeHidden();
   await expect(opener).toBeFocused();

@@ -8,6 +8,7 @@ import { Dialog } from '../Dialog';
 import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
+import { takeFocus } from '../video/VideoProgress';
 import { curveBytes, FORMAT_CARDS, sizeText, type CardFormat, type FormatCard } from './formats';
 import { PARTS, partsNow, type Part } from './parts';
 import { Segments } from './Segments';
@@ -249,7 +250,13 @@ function SaveButton({ format, options }: { format: MotionFormat; options: Motion
   return (
     <>
       {job ? (
-        <button type="button" class="secondary progress" title="Stop writing" onClick={() => store.cancelExport()}>
+        <button
+          ref={takeFocus}
+          type="button"
+          class="secondary progress"
+          title="Stop writing"
+          onClick={() => store.cancelExport()}
+        >
           <span class="progress-fill" style={{ width: `${percent}%` }} />
           <Icon name="close" />
           <span class="progress-text">
@@ -257,7 +264,12 @@ function SaveButton({ format, options }: { format: MotionFormat; options: Motion
           </span>
         </button>
       ) : (
-        <button type="button" class="primary motion-tone" onClick={() => void store.saveMotion(format, options)}>
+        <button
+          ref={takeFocus}
+          type="button"
+          class="primary motion-tone"
+          onClick={() => void store.saveMotion(format, options)}
+        >
           <Icon name="download" />
           Save .{extensionOf(format)}
         </button>
