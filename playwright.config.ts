@@ -4,7 +4,7 @@ import { CHROMIUM_FLAGS, installedChromium } from './tests/chromium.mjs';
 const port = 4179;
 
 /** What looks at the figure. */
-const STAGE = /(page|timeline|pose-editor|studio|video|stage)\.spec\.ts/;
+const STAGE = /(page|timeline|pose-editor|studio|video|avatar|stage)\.spec\.ts/;
 const WEBGPU = /webgpu\.spec\.ts/;
 
 const launch = (...flags: string[]) => ({
