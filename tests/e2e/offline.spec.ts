@@ -1,6 +1,7 @@
 import { expect, test, type Page } from '@playwright/test';
-import { fourPoses, loadSong, open, rejection } from './support/page';
+import { fourPoses, loadSong, open, rejection, saved } from './support/page';
 import { wav } from './support/songs';
+import { twoBuilds } from './support/two-builds';
 
 test.use({ serviceWorkers: 'allow' });
 
@@ -81,4 +82,60 @@ test('where the browser keeps nothing, the page works and says what is not kept'
   await page.evaluate((rotations) => window.posebeat.setKeyPoses([{ time: 2, rotations }]), fourPoses()[0]);
   await expect(page.locator('.notices')).toContainText('This browser does not keep your work');
   expect((await page.evaluate(() => window.posebeat.generate())).frames).toBe(120);
+});
+
+test('a newer build waits for the visitor: later keeps the page, now reloads into it with the work kept', async ({
+  page,
+}) => {
+  const host = await twoBuilds();
+  const [first, second, third] = fourPoses();
+  const place = (poses: number[][]) =>
+    page.evaluate(
+      (list) => window.posebeat.setKeyPoses(list.map((rotations, i) => ({ time: 1 + i, rotations }))),
+      poses,
+    );
+  const count = () => page.evaluate(() => window.posebeat.document().keyPoses.length);
+  const build = () => page.evaluate(() => document.documentElement.dataset.build ?? '1');
+  const notice = page.locator('.notice.update');
+  const arrive = async () => {
+    await page.waitForFunction(() => 'posebeat' in window);
+    await page.evaluate(() => window.posebeat.ready);
+  };
+  try {
+    await page.addInitScript(() => localStorage.setItem('posebeat.tour', 'seen'));
+    await page.goto(host.url);
+    await arrive();
+    await page.waitForFunction(() => navigator.serviceWorker.controller !== null, null, { timeout: 60_000 });
+    await place([first]);
+    host.release();
+    await page.evaluate(async () => (await navigator.serviceWorker.getRegistration())!.update());
+    await expect(notice).toContainText('A newer Posebeat is ready. Your work is saved before the page reloads.');
+
+    // Later: nothing is lost, nothing reloads.
+    await place([first, second]);
+    await page.evaluate(() => Object.assign(window, { stayed: true }));
+    await notice.getByRole('button', { name: 'Dismiss' }).click();
+    await expect(notice).toHaveCount(0);
+    expect(await page.evaluate(() => 'stayed' in window)).toBe(true);
+    expect(await count()).toBe(2);
+
+    // Until it is let in, opening the page again gives the old build whole, which asks again.
+    await saved(page);
+    await page.reload();
+    await arrive();
+    expect([await build(), await count()]).toEqual(['1', 2]);
+    await expect(notice).toBeVisible();
+
+    // Now, with work that was not saved a moment ago.
+    await Promise.all([
+      page.waitForURL(host.url, { waitUntil: 'load' }),
+      place([first, second, third]).then(() => notice.getByRole('button', { name: 'Reload' }).click()),
+    ]);
+    await expect.poll(() => build().catch(() => '')).toBe('2');
+    await arrive();
+    expect(await count()).toBe(3);
+    await expect(notice).toHaveCount(0);
+  } finally {
+    await host.close();
+  }
 });
