@@ -154,3 +154,37 @@ describe('the glow', () => {
     expect(glowAt(3, null)).toBe(0);
   });
 });
+
+describe('the view on stage', () => {
+  const motion = wildMotion(90, 3);
+  const plan = framePlan({ start: 0, end: 2 }, 30);
+  const view = {
+    follows: true,
+    position: [2, 1.5, 3] as [number, number, number],
+    target: [0.1, 1, 0] as [number, number, number],
+  };
+
+  it('is kept, and goes with the dancer where it follows', () => {
+    const stands = cameraPath(motion, plan, 16 / 9, 'stage', null, { ...view, follows: false });
+    const goes = cameraPath(motion, plan, 16 / 9, 'stage', null, view);
+    for (let frame = 0; frame < plan.frames; frame += 7)
+      for (let axis = 0; axis < 3; axis++) {
+        const dancer = axis === 1 ? 0 : goes.centre[frame * 2 + axis / 2];
+        expect(stands.position[frame * 3 + axis]).toBeCloseTo(view.position[axis], 5);
+        expect(stands.target[frame * 3 + axis]).toBeCloseTo(view.target[axis], 5);
+        expect(goes.position[frame * 3 + axis]).toBeCloseTo(view.position[axis] + dancer, 5);
+        expect(goes.target[frame * 3 + axis]).toBeCloseTo(view.target[axis] + dancer, 5);
+      }
+  });
+
+  it('shows upright what a square shows, from further away', () => {
+    const upright = cameraPath(motion, plan, 9 / 16, 'stage', null, { ...view, follows: false });
+    const away = (at: ArrayLike<number>) => Math.hypot(...[0, 1, 2].map((k) => at[k] - view.target[k]));
+    expect(away(upright.position.subarray(0, 3)) / away(view.position)).toBeCloseTo(16 / 9, 5);
+  });
+
+  it('is the camera that follows until it was turned', () => {
+    const [untouched, follow] = (['stage', 'follow'] as const).map((name) => cameraPath(motion, plan, 1, name, null));
+    expect(untouched).toEqual(follow);
+  });
+});

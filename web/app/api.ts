@@ -7,7 +7,9 @@ import type { GenerateCall, GenerateSummary } from './actions/dance';
 import type { MotionFileOptions } from './actions/export';
 import { MOTION_FORMATS, type MotionFormat } from './motion-formats';
 import type { SuggestCall } from './actions/suggest';
+import type { PictureHooks } from './actions/stills';
 import type { VideoCallOptions } from './actions/video';
+import type { PictureOptions } from '../video/options';
 import type { DanceReport } from './report';
 import type { Store } from './store';
 
@@ -56,6 +58,12 @@ export interface PosebeatApi {
   setAvatar(file: File | Blob | null, options?: SetAvatarOptions): Promise<{ name: string; height: number } | null>;
   /** The character on stage, and where our 24 joints are in its body now: 24 x 3 metres, floor at y = 0; null = the figure dances. */
   avatar(): { name: string; height: number; joints: Float32Array } | null;
+  /** The stage at a moment as a PNG, at any of the video's shapes and sizes; `background: 'none'` makes it transparent. */
+  exportPicture(options?: PictureOptions & PictureHooks): Promise<Blob>;
+  /** The key poses as one PNG: figures in order with their names, times and bars. `scale` 1 is 2400 pixels across. */
+  exportKeyPoses(options?: PictureHooks & { scale?: number }): Promise<Blob>;
+  /** A few seconds of the dance as an animated GIF that goes round on the beat: the selected stretch, or the bars at the playhead. */
+  exportLoop(options?: PictureHooks): Promise<Blob>;
   /** The project as an address: opening it shows the same dance. Rejects when it would be too long for one. */
   shareLink(): Promise<string>;
   /** A copy of the project document. */
@@ -118,6 +126,9 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       );
     },
     exportVideo: async (options = {}) => store.exportVideo(options),
+    exportPicture: (options = {}) => store.exportPicture(options),
+    exportKeyPoses: (options = {}) => store.exportKeyPoses(options),
+    exportLoop: (options = {}) => store.exportLoop(options),
     setAvatar: async (file, options) => store.setAvatar(file, options),
     avatar() {
       const shown = state.avatar.value;

@@ -9,6 +9,7 @@ import type { Assets, Engine, Listener, Storage } from './ports';
 import type { AvatarStore } from './avatar-store';
 import type { MotionFileWriter } from './export-client';
 import type { PoseStore } from './pose-store';
+import type { Drawer } from './actions/stills';
 import type { Filmer } from '../video/video-client';
 import type { NoticeAction, State } from './state';
 import type { Suggester } from './suggester';
@@ -31,6 +32,8 @@ export interface Services {
   writeMotionFile?: MotionFileWriter;
   /** Missing: in a worker. */
   filmer?: Filmer;
+  /** Missing: in a worker. */
+  draw?: Drawer;
   /** Missing where there can be no other tab. */
   tabs?: Tabs;
   /** From `?backend=`. */

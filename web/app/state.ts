@@ -25,7 +25,7 @@ import type { DanceResult, LoadProgress, ModelInfo } from './ports';
 import { madeFrom, type DanceInputs } from './recipe';
 import type { OwnPose } from './pose-store';
 import type { DanceReport } from './report';
-import type { VideoJob } from './actions/video';
+import type { VideoJob, VideoTab } from './actions/video';
 import { createAvatarState } from './avatar-state';
 import { createSuggestState } from './suggester';
 
@@ -280,6 +280,8 @@ export function createState() {
     exportJob: signal<ExportJob | null>(null),
     /** The video panel. */
     videoOpen: signal(false),
+    /** What the video panel makes. */
+    videoTab: signal<VideoTab>('video'),
     /** The video that is being made, or null. */
     videoJob: signal<VideoJob | null>(null),
     /** The walk-through: which step is shown, from 0; null = none. */

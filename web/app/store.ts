@@ -26,6 +26,7 @@ import { projectActions } from './actions/project';
 import { rangeActions } from './actions/ranges';
 import { shareActions } from './actions/share';
 import { songActions } from './actions/song';
+import { stillActions } from './actions/stills';
 import { suggestActions } from './actions/suggest';
 import { tabActions } from './actions/tabs';
 import { tourActions } from './actions/tour';
@@ -180,6 +181,7 @@ export function createStore(services: Services, reporter: Reporter) {
     ...avatarActions(context, services.avatarStore),
     ...motionImportActions(context),
     ...videoActions(context),
+    ...stillActions(context),
     ...demo,
     ...tabs,
     ...view,

@@ -1,5 +1,6 @@
 /** A stage without a visitor: figure, floor and light drawn into a canvas of its own, one picture per call. */
 import { Color, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
+import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
 import type { FramePose } from '../core/types';
 import { Figure } from './figure';
 import { loadFigure } from './figure-asset';
@@ -42,18 +43,25 @@ export class FilmSet {
   /**
    * Builds the set.
    * @param canvas of the picture's size in pixels
-   * @param background `stage`, or a colour as `#rrggbb`, which the picture has exactly
+   * @param background `stage`, `none`, or a colour as `#rrggbb`, which the picture has exactly
    * @param fieldOfView vertical, degrees
+   * @param look of the figure
    * @throws Error when the browser has no WebGL 2 or the figure cannot be loaded
    */
-  static async open(canvas: OffscreenCanvas, background: string, fieldOfView: number): Promise<FilmSet> {
+  static async open(
+    canvas: OffscreenCanvas,
+    background: string,
+    fieldOfView: number,
+    look: Readonly<FigureLook> = DEFAULT_LOOK,
+  ): Promise<FilmSet> {
     const { width, height } = canvas;
-    const renderer = createRenderer(canvas);
+    const renderer = createRenderer(canvas, background === 'none');
     renderer.setSize(width, height, false);
     const onStage = background === 'stage';
     const figure = new Figure(await loadFigure());
+    figure.wear(look);
     const set = new FilmSet(renderer, figure, width / height, fieldOfView, onStage);
-    if (!onStage) set.scene.background = new Color(background);
+    if (background.startsWith('#')) set.scene.background = new Color(background);
     await renderer.compileAsync(set.scene, set.camera);
     return set;
   }
@@ -90,13 +98,14 @@ export class FilmSet {
   }
 }
 
-function createRenderer(canvas: OffscreenCanvas): WebGLRenderer {
+function createRenderer(canvas: OffscreenCanvas, alpha: boolean): WebGLRenderer {
   let renderer: WebGLRenderer;
   try {
-    renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    renderer = new WebGLRenderer({ canvas, alpha, antialias: true, powerPreference: 'high-performance' });
   } catch {
     throw new Error('This browser cannot draw 3D here (WebGL 2 is off): turn on hardware acceleration and try again.');
   }
   applyLook(renderer);
+  if (alpha) renderer.setClearColor(0, 0);
   return renderer;
 }

@@ -69,6 +69,12 @@ export function SaveMenu() {
           onClick={then(() => store.toggleVideo(true))}
         />
         <Entry
+          icon="imageDown"
+          text="Save a picture"
+          hint="The stage, or all key poses on one sheet"
+          onClick={then(() => store.toggleVideo(true, 'picture'))}
+        />
+        <Entry
           icon="share"
           text="Share as a link"
           hint="The whole dance in an address"

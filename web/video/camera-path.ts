@@ -1,4 +1,5 @@
 /** Where the camera is in every frame of a video, worked out beforehand from the whole dance. Pure: no DOM, no three. */
+import type { CameraView } from '../core/document';
 import { framePose, type MutableFramePose } from '../core/motion';
 import { forwardKinematics, JOINT_COUNT, jointIndex } from '../core/skeleton';
 import type { BeatGrid, Motion } from '../core/types';
@@ -138,6 +139,7 @@ export function neededDistance(
 /**
  * The camera of every frame. What a shot has to show is whole in all of its frames.
  * @param aspect width over height
+ * @param view the visitor's, for the camera `stage`; null = the opening view
  */
 export function cameraPath(
   motion: Motion,
@@ -145,6 +147,7 @@ export function cameraPath(
   aspect: number,
   camera: VideoCamera,
   grid: BeatGrid | null,
+  view: CameraView | null = null,
 ): CameraPath {
   const { frames, fps } = plan;
   const up = Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * (1 - MARGIN);
@@ -157,10 +160,24 @@ export function cameraPath(
     target: new Float32Array(frames * 3),
     centre: Float32Array.from(eased),
   };
+  if (camera === 'stage' && view) return asOnStage(view, aspect, eased, path);
   for (const shot of shotsOf(camera, plan, grid)) {
     const centre = shot.follows ? eased.slice(shot.from * 2, shot.to * 2) : standing(place, shot, fps);
     film(shot, body, centre, fps, tangent, path);
   }
+  return path;
+}
+
+/** The visitor's own view. An upright picture steps back until it shows what a square one would. */
+function asOnStage(view: CameraView, aspect: number, eased: Float64Array, path: CameraPath): CameraPath {
+  const back = Math.max(1, 1 / aspect);
+  for (let frame = 0; frame < eased.length / 2; frame++)
+    for (let axis = 0; axis < 3; axis++) {
+      const dancer = view.follows && axis !== 1 ? eased[frame * 2 + axis / 2] : 0;
+      const target = view.target[axis] + dancer;
+      path.target[frame * 3 + axis] = target;
+      path.position[frame * 3 + axis] = target + (view.position[axis] - view.target[axis]) * back;
+    }
   return path;
 }
 

@@ -109,10 +109,10 @@ export async function film(
   const codecs = await formatSupport(format, wish);
   signal.throwIfAborted();
   const canvas = new OffscreenCanvas(width, height);
-  const set = await FilmSet.open(canvas, request.background, FIELD_OF_VIEW);
+  const set = await FilmSet.open(canvas, request.background, FIELD_OF_VIEW, request.look);
   let output: Output | null = null;
   try {
-    const path = cameraPath(motion, plan, width / height, request.camera, grid);
+    const path = cameraPath(motion, plan, width / height, request.camera, grid, request.view);
     signal.throwIfAborted();
     const disk = file && (await DiskFile.open(file));
     const target = disk ? disk.target : new BufferTarget();

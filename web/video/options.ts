@@ -9,8 +9,8 @@ export type VideoAspect = (typeof ASPECTS)[number];
 export const VIDEO_SIZES = [180, 360, 720, 1080, 1440, 2160] as const;
 /** Frames per second. */
 export const VIDEO_RATES = [30, 60] as const;
-/** How the camera moves: along with the dancer, from the audience's seat, round the dancer, or in shots that change on bars. */
-export const VIDEO_CAMERAS = ['follow', 'front', 'orbit', 'cuts'] as const;
+/** How the camera moves: along with the dancer, from the audience's seat, round the dancer, in shots that change on bars, as on stage. */
+export const VIDEO_CAMERAS = ['follow', 'front', 'orbit', 'cuts', 'stage'] as const;
 /** One of them. */
 export type VideoCamera = (typeof VIDEO_CAMERAS)[number];
 /** Containers. */
@@ -30,7 +30,10 @@ export interface VideoOptions {
   size?: number;
   /** Frames per second: 30 (when left out) or 60; the pose of every frame is worked out for its own time. */
   fps?: number;
-  /** `follow` (when left out) goes along with the dancer, `front` stands still, `orbit` circles, `cuts` changes the shot on bars. */
+  /**
+   * `follow` (when left out) goes along with the dancer, `front` stands still, `orbit` circles, `cuts` changes the shot on bars, `stage`
+   * looks from where the visitor does.
+   */
   camera?: VideoCamera;
   /** The stage with its floor (when left out), or one colour as `#rrggbb`. */
   background?: string;
@@ -130,4 +133,42 @@ export function videoBytes(width: number, height: number, plan: FramePlan, sound
 /** How long the rest takes at the pace so far, seconds; null while there is too little to tell. */
 export function timeLeft(elapsed: number, done: number, all: number): number | null {
   return done < 3 || elapsed < 1 ? null : (elapsed / done) * (all - done);
+}
+
+/** Cameras of a still picture. */
+export const PICTURE_CAMERAS = ['stage', 'follow', 'front'] as const;
+
+/** How a still picture is made; everything may be left out. */
+export interface PictureOptions {
+  /** Width to height; 16:9 when left out. */
+  aspect?: VideoAspect;
+  /** Pixels along the shorter edge: 180, 360, 720, 1080 (when left out), 1440 or 2160. */
+  size?: number;
+  /** `stage` (when left out) looks from where the visitor does, `follow` shows all of the dancer, `front` from the audience's seat. */
+  camera?: (typeof PICTURE_CAMERAS)[number];
+  /** `stage` with its floor (when left out), `none` for a transparent picture, or one colour as `#rrggbb`. */
+  background?: string;
+  /** Seconds of the song; without it, where the playhead is. */
+  time?: number;
+}
+
+/**
+ * Fills in what was left out.
+ * @throws Error that names the first option that cannot be and what it can be
+ */
+export function pictureSettings(options: PictureOptions) {
+  const { aspect = '16:9', size = 1080, camera = 'stage', background = 'stage', time } = options;
+  if (!/^(stage|none|#[0-9a-f]{6})$/i.test(background)) {
+    throw new Error('background must be "stage", "none" or a colour such as "#00b140".');
+  }
+  if (time !== undefined && !(time >= 0 && Number.isFinite(time))) {
+    throw new Error('time must be a number of seconds from 0 on.');
+  }
+  return {
+    aspect: oneOf('aspect', aspect, ASPECTS),
+    size: oneOf<number>('size', size, VIDEO_SIZES),
+    camera: oneOf('camera', camera, PICTURE_CAMERAS),
+    background,
+    time,
+  };
 }

@@ -82,7 +82,8 @@ export function cutFrames(plan: FramePlan, grid: BeatGrid | null): { frame: numb
 /** The shots of a video, one after another without a gap. */
 export function shotsOf(camera: VideoCamera, plan: FramePlan, grid: BeatGrid | null): Shot[] {
   const all = { from: 0, to: plan.frames };
-  if (camera === 'follow') return [{ ...FOLLOW, ...all }];
+  // The stage's opening view is this one; another has a path of its own.
+  if (camera === 'follow' || camera === 'stage') return [{ ...FOLLOW, ...all }];
   if (camera === 'front') return [{ ...STILL, ...all }];
   if (camera === 'orbit') {
     const bar = barLength(grid?.downbeats ?? []) ?? 2;

@@ -1,7 +1,15 @@
 /** The page's side of the video worker: one worker per job. */
 import VideoWorker from './video.worker?worker';
 import type { VideoFormat } from './options';
-import { VIDEO_TYPES, type EncoderWish, type FilmRequest, type VideoReply, type VideoSupport } from './protocol';
+import {
+  VIDEO_TYPES,
+  type EncoderWish,
+  type FilmRequest,
+  type PictureCall,
+  type VideoCall,
+  type VideoReply,
+  type VideoSupport,
+} from './protocol';
 
 /** A finished video. `blob` is missing where it went straight to the disk. */
 export interface Film {
@@ -56,35 +64,54 @@ export const filmer: Filmer = {
   },
 
   async film(request, file, progress, signal) {
-    signal.throwIfAborted();
-    const worker = new VideoWorker();
-    let patience: ReturnType<typeof setTimeout> | undefined;
-    try {
-      const reply = await new Promise<VideoReply>((resolve, reject) => {
-        answer(worker, progress).then(resolve, reject);
-        signal.addEventListener(
-          'abort',
-          () => {
-            // The worker puts the file away itself; one that hangs is not waited for.
-            worker.postMessage({ type: 'cancel' });
-            patience = setTimeout(() => reject(signal.reason as Error), PATIENCE);
-          },
-          { once: true },
-        );
-        worker.postMessage(
-          { type: 'film', request, file },
-          (request.sound?.channels ?? []).map(({ buffer }) => buffer),
-        );
-      });
-      if (reply.type === 'done') {
-        const { format, bytes } = reply;
-        return { format, ...(bytes ? { blob: new Blob([bytes], { type: VIDEO_TYPES[format] }) } : {}) };
-      }
-      if (signal.aborted) throw signal.reason as Error;
-      throw new Error(reply.type === 'error' ? reply.message : STOPPED);
-    } finally {
-      clearTimeout(patience);
-      worker.terminate();
-    }
+    const songs = (request.sound?.channels ?? []).map(({ buffer }) => buffer);
+    const reply = await job({ type: 'film', request, file }, songs, progress, signal);
+    if (reply.type !== 'done') throw new Error(STOPPED);
+    const { format, bytes } = reply;
+    return { format, ...(bytes ? { blob: new Blob([bytes], { type: VIDEO_TYPES[format] }) } : {}) };
   },
 };
+
+/** Draws pictures in workers. Rejects with an AbortError when the signal fires. */
+export async function drawInWorker(
+  call: PictureCall,
+  progress: (done: number) => void,
+  signal: AbortSignal,
+): Promise<Blob> {
+  const reply = await job(call, [], progress, signal);
+  if (reply.type !== 'picture') throw new Error(STOPPED);
+  return reply.blob;
+}
+
+/** One call, one worker, which is ended after it. */
+async function job(
+  call: VideoCall,
+  transfer: Transferable[],
+  progress: (done: number) => void,
+  signal: AbortSignal,
+): Promise<VideoReply> {
+  signal.throwIfAborted();
+  const worker = new VideoWorker();
+  let patience: ReturnType<typeof setTimeout> | undefined;
+  try {
+    const reply = await new Promise<VideoReply>((resolve, reject) => {
+      answer(worker, progress).then(resolve, reject);
+      signal.addEventListener(
+        'abort',
+        () => {
+          // The worker puts the file away itself; one that hangs is not waited for.
+          worker.postMessage({ type: 'cancel' });
+          patience = setTimeout(() => reject(signal.reason as Error), PATIENCE);
+        },
+        { once: true },
+      );
+      worker.postMessage(call, transfer);
+    });
+    if (reply.type !== 'error') return reply;
+    if (signal.aborted) throw signal.reason as Error;
+    throw new Error(reply.message);
+  } finally {
+    clearTimeout(patience);
+    worker.terminate();
+  }
+}

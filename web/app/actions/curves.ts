@@ -232,7 +232,7 @@ export function curveActions(
       const name = state.document.value.song?.name ?? 'dance';
       const origin = await originOf(state, dance);
       if (as === 'json') return new Blob([writeCurvesJson(curves, origin)], { type: 'application/json' });
-      const body = figure ? await bodyOf(dance.motion) : {};
+      const body = figure ? await bodyOf(dance.motion, state.document.value.look) : {};
       return new Blob([writeCurvesGlb(curves, name, { origin, ...body })], { type: 'model/gltf-binary' });
     },
 
@@ -255,8 +255,8 @@ export function curveActions(
 export type CurveActions = ReturnType<typeof curveActions>;
 
 /** Our figure for a file, and how its helper bones move in a dance: frame by frame, for nobody edits them. */
-async function bodyOf(motion: Motion) {
-  const [figure, { helperSamplers }] = await Promise.all([loadGlbFigure(), import('../../scene/skin-samplers')]);
+async function bodyOf(motion: Motion, look: ProjectDocument['look']) {
+  const [figure, { helperSamplers }] = await Promise.all([loadGlbFigure(look), import('../../scene/skin-samplers')]);
   return { figure, helpers: helperSamplers(motion) };
 }
 

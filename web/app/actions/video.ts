@@ -1,5 +1,6 @@
 /** The dance as a video with the song. Only reads the project: whatever happens here, it stays as it is. */
 import type { TimeRange } from '../../core/document';
+import { DEFAULT_LOOK } from '../../core/figure-look';
 import { isAbort, messageOf, type Context } from '../context';
 import { fileName, saveFile } from '../download';
 import {
@@ -23,6 +24,9 @@ export interface VideoCallOptions extends VideoOptions {
   /** Stops the video; the call is rejected with an AbortError. */
   signal?: AbortSignal;
 }
+
+/** What the video panel makes: a video, a still picture, a contact sheet of the key poses. */
+export type VideoTab = 'video' | 'picture' | 'keys';
 
 /** A video in the making. */
 export interface VideoJob {
@@ -134,6 +138,8 @@ export function videoActions(context: Context) {
           ...videoSize(settings.aspect, settings.size),
           camera: settings.camera,
           background: settings.background,
+          view: state.document.value.camera,
+          look: state.document.value.look ?? DEFAULT_LOOK,
           grid: state.grid.value,
           sound: settings.sound && song?.buffer ? soundOf(song.buffer, plan) : null,
           format: settings.format,
@@ -193,7 +199,8 @@ export function videoActions(context: Context) {
     },
 
     /** Opens or closes the video panel. */
-    toggleVideo(open = !state.videoOpen.value): void {
+    toggleVideo(open = !state.videoOpen.value, tab: VideoTab = 'video'): void {
+      if (open) state.videoTab.value = tab;
       state.videoOpen.value = open;
     },
   };

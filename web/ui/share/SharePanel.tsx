@@ -5,6 +5,7 @@ import { SAFE_LINK } from '../../app/actions/share';
 import { messageOf } from '../../app/context';
 import { isPlayed } from '../../core/formats/share-grid';
 import { Icon } from '../Icon';
+import { MovingPreview } from '../picture/MovingPreview';
 import { leaveByEscape } from '../popover';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
@@ -95,6 +96,7 @@ function Panel() {
             {link.length > SAFE_LINK &&
               ` It has ${link.length.toLocaleString('en')} characters; some chat programs cut what is longer than ${SAFE_LINK.toLocaleString('en')}: a .posebeat file is safer there.`}
           </p>
+          <MovingPreview />
           <Copyable label="For your own web page" text={embedSnippet(link)} action="Copy the code" />
         </>
       )}

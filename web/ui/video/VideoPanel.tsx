@@ -12,11 +12,14 @@ import {
 } from '../../video/options';
 import type { VideoSupport } from '../../video/protocol';
 import { chooseFormat, contentsText, FORMAT_NAMES, NO_VIDEO, supportText } from '../../video/support-words';
+import type { VideoTab } from '../../app/actions/video';
 import { Dialog } from '../Dialog';
 import { sizeText } from '../export/formats';
 import { PARTS, partsNow, type Part } from '../export/parts';
 import { Segments } from '../export/Segments';
 import { Icon } from '../Icon';
+import { KeysPanel } from '../picture/KeysPanel';
+import { PicturePanel } from '../picture/PicturePanel';
 import { useStore } from '../store-context';
 import { takeFocus, VideoProgress } from './VideoProgress';
 
@@ -44,6 +47,7 @@ const CAMERA_LABELS: readonly { value: VideoCamera; label: string; title: string
   { value: 'front', label: 'Front', title: 'Stands still, as from a seat in the audience' },
   { value: 'orbit', label: 'Orbit', title: 'Circles the dancer, once in eight bars' },
   { value: 'cuts', label: 'Beat cuts', title: 'Another shot every few bars, on the first beat' },
+  { value: 'stage', label: 'As on stage', title: 'Looks from where you do now, and keeps to it' },
 ];
 
 const SIZE_LABELS: Readonly<Record<number, string>> = {
@@ -55,31 +59,62 @@ const SIZE_LABELS: Readonly<Record<number, string>> = {
   2160: '2160p (4K)',
 };
 
-/** The dance as a video with the song. */
+const TABS: readonly { value: VideoTab; label: string }[] = [
+  { value: 'video', label: 'Video' },
+  { value: 'picture', label: 'Picture' },
+  { value: 'keys', label: 'Key poses' },
+];
+const TITLES: Readonly<Record<VideoTab, string>> = {
+  video: 'Save as a video',
+  picture: 'Save a picture',
+  keys: 'Key poses as a picture',
+};
+
+/** The dance as a video with the song, or as a picture. */
 export function VideoPanel() {
   const store = useStore();
   const open = store.state.videoOpen.value;
+  const tab = store.state.videoTab.value;
   return (
     <>
       <Dialog
         open={open}
         onClose={() => store.toggleVideo(false)}
-        title="Save as a video"
+        title={TITLES[tab]}
         titleId="video-title"
         kind="export-panel video-panel"
         bodyClass="export-body"
         keepsKeys
       >
-        {() => <Contents />}
+        {() => (
+          <>
+            <Segments
+              legend="What is saved"
+              name="video-tab"
+              value={tab}
+              options={TABS}
+              onChange={(value) => store.toggleVideo(true, value)}
+            />
+            {tab === 'keys' ? <KeysPanel /> : <Contents tab={tab} />}
+          </>
+        )}
       </Dialog>
       {!open && <VideoProgress chip />}
     </>
   );
 }
 
-function Contents() {
+/** What needs a dance. */
+function Contents({ tab }: { tab: 'video' | 'picture' }) {
+  const dance = useStore().state.onStage.value;
+  if (!dance || dance.kind === 'preview')
+    return <Empty text="There is no dance yet: drop a song and press Generate." />;
+  return tab === 'picture' ? <PicturePanel /> : <Video />;
+}
+
+function Video() {
   const store = useStore();
-  const { onStage, document, loop, song, duration, videoJob } = store.state;
+  const { document, loop, song, duration, videoJob } = store.state;
   // Read here, so that the panel follows them.
   void [document.value.trim, loop.value, duration.value];
   const sound = choice.sound.value && song.value !== null;
@@ -94,9 +129,6 @@ function Contents() {
     sound,
   };
   const support = useSupport(options);
-  const dance = onStage.value;
-  if (!dance || dance.kind === 'preview')
-    return <Empty text="There is no dance yet: drop a song and press Generate." />;
   if (support instanceof Error || support?.any === false) return <Empty text={NO_VIDEO} />;
   const plan = store.videoPlan(options);
   const made = support ? chooseFormat(choice.format.value, support) : null;
