@@ -1,5 +1,14 @@
 /** The picture side of a character's file: three's objects for its nodes. Nothing is ever loaded from anywhere else. No page is needed. */
-import { LoadingManager, Mesh, SkinnedMesh, Sphere, Texture, type Material, type Object3D } from 'three';
+import {
+  LoadingManager,
+  Mesh,
+  MeshStandardMaterial,
+  SkinnedMesh,
+  Sphere,
+  Texture,
+  type Material,
+  type Object3D,
+} from 'three';
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import type { VRM } from '@pixiv/three-vrm';
 
@@ -12,6 +21,8 @@ export interface LoadedAvatar {
   vrm: VRM | null;
 }
 
+/** The stage has nothing around it that metal could mirror: all metal would be black. */
+const MOST_METAL = 0.3;
 /** Any pose of a dancer fits in a ball this many times its height. */
 const REACH = 1.2;
 
@@ -72,6 +83,8 @@ export function prepareMeshes(scene: Object3D, height: number): void {
     if (!(object instanceof Mesh)) return;
     object.castShadow = true;
     object.receiveShadow = true;
+    for (const material of [object.material].flat() as Material[])
+      if (material instanceof MeshStandardMaterial) material.metalness = Math.min(material.metalness, MOST_METAL);
     if (!(object instanceof SkinnedMesh)) return;
     object.frustumCulled = false;
     // Without it three would skin every vertex on the CPU to sort the scene.

@@ -1,6 +1,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { useSignal, type Signal } from '@preact/signals';
 import type { JointHover, Stage } from '../scene/stage';
+import { AvatarChip } from './avatar/AvatarChip';
 import { CompareBadge } from './CompareBadge';
 import { Icon } from './Icon';
 import { chooseFile } from './files';
@@ -57,6 +58,7 @@ export function StageView() {
       {draft.value ? <Posing hover={hover} /> : (!song.value || song.value.demo) && <Welcome />}
       <SoundChip />
       <WorkChip />
+      <AvatarChip />
       <CompareBadge />
       <div class="stage-tools">
         <OverlayTools />

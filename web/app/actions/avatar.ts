@@ -1,6 +1,7 @@
 /** Characters of the visitor's own: opened, kept, chosen. They belong to this browser, not to the project. */
 import type { BoneGuess } from '../../core/avatar/guess';
 import type { AvatarFigure } from '../../scene/avatar';
+import { poseName } from '../../core/formats/pose-file';
 import { gltfParts, mayBeAvatar } from '../avatar-file';
 import type * as avatarOpen from '../avatar-open';
 import type { AvatarInUse } from '../avatar-state';
@@ -82,7 +83,7 @@ export function avatarActions(context: Context, store: AvatarStore = createAvata
     const own = known && parts.mapFits(rig, known.map) ? [...known.map] : null;
     const map = parts.bonesByName(rig, own ?? guess.bones, options.bones ?? {});
     const plain = file instanceof File ? file.name.replace(/\.[a-z0-9]{2,5}$/i, '') : '';
-    const name = (known?.name || rig.title.trim() || plain || 'Character').slice(0, 80);
+    const name = known?.name || poseName(rig.title) || poseName(plain) || 'Character';
     const source = { bytes, name, map };
     const figure = await parts.openAvatar(source);
     const { usable } = parts.judgeBones(rig, map);
