@@ -1,6 +1,8 @@
 import fc from 'fast-check';
 import { deflateSync, inflateSync } from 'fflate';
 import { describe, expect, it } from 'vitest';
+import { createStore } from '../../web/app/store';
+import { Player } from '../../web/audio/player';
 import { clipId } from '../../web/core/clip-id';
 import { createDocument, frameOf, sortKeys, type ProjectDocument } from '../../web/core/document';
 import { readProject, writeProject } from '../../web/core/formats/project-file';
@@ -10,6 +12,7 @@ import { crc32 } from '../../web/core/formats/zip-read';
 import { tidy } from '../../web/core/grid-edit';
 import { angleBetween, axisAngleToQuaternion } from '../../web/core/rotation';
 import type { BeatGrid } from '../../web/core/types';
+import { fakeReporter, fakeServices } from '../unit/support/app';
 import { documents, expectDocumentOrSentence, plain } from './support/documents';
 
 /** What a link leaves out, left out; poses and starting clip apart. */
@@ -256,4 +259,34 @@ describe('1,000 damaged', () => {
       expect(performance.now() - began).toBeLessThan(2000);
     }
   });
+
+  it('links and project files leave the project that is open as it is, and say so', async () => {
+    const store = createStore(fakeServices(new Player(() => ({}) as AudioContext)), fakeReporter());
+    await store.start();
+    await store.loadSong(new File(['song'], 'mine.mp3'));
+    store.setKeyPoses([{ time: 2, rotations: new Array<number>(72).fill(0.2) }]);
+    const open = store.state.document.value;
+    const random = noise(17);
+    const link = writeLink(document, 'light (q6)');
+    const whole = writeProject(document);
+    for (let i = 0; i < 1000; i += 1) {
+      store.state.notices.value = [];
+      if (i % 2) {
+        const text = mutated(link, random);
+        if (isWhole(() => readLink(text))) continue;
+        expect(await store.openLink(text)).toBe(false);
+      } else await store.openProject(new File([mutated<Uint8Array>(whole, random)], 'theirs.posebeat'));
+      expect(store.state.notices.value.length).toBeGreaterThan(0);
+      expect(store.state.document.value).toBe(open);
+    }
+  });
 });
+
+/** True for a link that was only added to. */
+function isWhole(read: () => unknown): boolean {
+  try {
+    return Boolean(read());
+  } catch {
+    return false;
+  }
+}
