@@ -182,20 +182,29 @@ def load(path: Path) -> tuple[str, nn.Module, dict]:
     return name, model.eval(), state
 
 
+def _records(run_folder: Path) -> tuple[list[dict], list[dict]]:
+    """Runs and log of a training folder."""
+    return tuple([json.loads(line) for line in (run_folder / file).read_text(encoding="utf-8").splitlines()] for file in ("runs.jsonl", "log.jsonl"))
+
+
 def write_training(out: Path, name: str, checkpoint: Path) -> None:
     """NAME.training.json: the runs (commands, settings, data hash, commit) and the log of a checkpoint's folder. Folders of this machine
     are named by what is in them."""
-    read = lambda file: [json.loads(line) for line in (checkpoint.parent / file).read_text(encoding="utf-8").splitlines()]  # noqa: E731
-    runs = read("runs.jsonl")
+    runs, log = _records(checkpoint.parent)
+    # A run that started from the weights of an earlier one is only half of the story.
+    while earlier := runs[0]["settings"].get("weights"):
+        before = _records(Path(earlier).parent)
+        runs, log = before[0] + runs, before[1] + log
     for run_ in runs:
         words = run_["command"].split()
-        for flag, word in (("--data", "DATA"), ("--features", "FEATURES15"), ("--song-features", "FEATURES53"), ("--out", f"export/runs/{name}")):
+        for flag, word in (("--data", "DATA"), ("--features", "FEATURES15"), ("--song-features", "FEATURES53"), ("--out", None)):
             if flag in words:
-                words[words.index(flag) + 1] = word
+                place = words.index(flag) + 1
+                words[place] = word or f"export/runs/{Path(words[place]).name}"
         words[1] = "export/train_danceformer.py"
         run_["command"] = " ".join(words)
         run_["settings"]["song_features"] = "FEATURES53"
-    (out / f"{name}.training.json").write_text(json.dumps({"runs": runs, "log": read("log.jsonl")}, indent=1) + "\n", encoding="utf-8")
+    (out / f"{name}.training.json").write_text(json.dumps({"runs": runs, "log": log}, indent=1) + "\n", encoding="utf-8")
 
 
 def main() -> None:
