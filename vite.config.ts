@@ -1,5 +1,6 @@
 import { defineConfig } from 'vite';
 import { VitePWA } from 'vite-plugin-pwa';
+import { LICENSES_FILE, licenses } from './licenses.ts';
 
 /** Cross-origin isolation gives WASM its threads; the page works without it too, with one thread. */
 const isolation = {
@@ -40,6 +41,7 @@ const offline = VitePWA({
     // So does what makes videos, or opens characters, wait for somebody who wants it.
     globIgnores: ['**/*jspi*', '**/video.worker*', '**/avatar-open*', '**/three-vrm*', '**/meshopt_decoder*'],
     navigateFallback: 'index.html',
+    navigateFallbackDenylist: [new RegExp(`/${LICENSES_FILE}$`)],
     clientsClaim: true,
     skipWaiting: false,
     cleanupOutdatedCaches: true,
@@ -64,13 +66,15 @@ const offline = VitePWA({
   },
 });
 
+const licences = licenses();
+
 export default defineConfig(({ mode }) => ({
   root: 'web',
   base: './',
   publicDir: '../public',
   build: { outDir: '../dist', emptyOutDir: true, target: 'es2022', chunkSizeWarningLimit: 1500 },
-  plugins: [offline],
-  worker: { format: 'es' as const },
+  plugins: [offline, licences.page],
+  worker: { format: 'es' as const, plugins: licences.worker },
   resolve: {
     // A bundled onnxruntime re-imports the app in its thread workers and hangs; these conditions keep its loader outside.
     conditions: [

@@ -35,6 +35,11 @@ export function HelpOverlay() {
             </button>
           </div>
           <Keys />
+          <p class="hint">
+            <a href="licenses.txt" target="_blank" rel="noopener">
+              Licences of what is inside
+            </a>
+          </p>
         </>
       )}
     </Dialog>
