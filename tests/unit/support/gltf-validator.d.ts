@@ -4,7 +4,11 @@ declare module 'gltf-validator' {
     bytes: Uint8Array,
     options?: { maxIssues?: number; ignoredIssues?: string[] },
   ): Promise<{
-    issues: { numErrors: number; numWarnings: number; messages: { code: string; message: string; pointer?: string }[] };
+    issues: {
+      numErrors: number;
+      numWarnings: number;
+      messages: { code: string; message: string; severity: number; pointer?: string }[];
+    };
     info: Record<string, unknown>;
   }>;
 }

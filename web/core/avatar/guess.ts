@@ -99,9 +99,12 @@ function findMiddle(rig: AvatarRig, bones: BoneMap): void {
 }
 
 /** The lowest bone that all of these hang on; -1 where there is none. */
-function common(rig: AvatarRig, nodes: readonly number[]): number {
-  for (let at = rig.parents[nodes[0]]; at >= 0; at = rig.parents[at]) {
-    if (nodes.every((node) => hangsOn(rig, node, at))) return at;
-  }
-  return -1;
+function common({ parents }: AvatarRig, nodes: readonly number[]): number {
+  const above = nodes.map((node) => {
+    const chain: number[] = [];
+    for (let at = parents[node]; at >= 0; at = parents[at]) chain.push(at);
+    return chain;
+  });
+  const others = above.slice(1).map((chain) => new Set(chain));
+  return above[0].find((node) => others.every((chain) => chain.has(node))) ?? -1;
 }

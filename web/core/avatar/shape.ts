@@ -12,6 +12,8 @@ import { cross, distance, dot, mean, minus, norm, pointOf, type Vector } from '.
 const ALIKE = 0.15;
 /** Of a bone with very many children the longest are looked at: a hostile file must not take long. */
 const MOST_CHILDREN = 12;
+/** No limb has more bones than this. */
+const MOST_STEPS = 60;
 /** Cosines between back and legs: below the first a body stands upright, up to the second it goes on four legs. */
 const UPRIGHT = -0.42;
 const FOUR_LEGS = 0.5;
@@ -88,7 +90,7 @@ function growTree({ candidates, parents, world }: AvatarRig): Tree {
 /** The longest chain from a bone on, bones on top of each other left out. */
 function chainFrom({ next }: Tree, node: number, rig: AvatarRig): number[] {
   const chain = [node];
-  for (let at = next[node]; at >= 0 && chain.length < 40; at = next[at]) {
+  for (let at = next[node], steps = 0; at >= 0 && steps < MOST_STEPS; at = next[at], steps++) {
     const last = pointOf(rig.world.positions, chain[chain.length - 1]);
     if (distance(last, pointOf(rig.world.positions, at)) > 0.004 * rig.size) chain.push(at);
   }
