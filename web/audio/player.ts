@@ -2,8 +2,10 @@
 import { HeardClock } from './heard-clock';
 import { positionAt, type LoopRange, type Segment } from './segment';
 import { SongSource } from './song-source';
+import { SoundOutput, type ContextFactory } from './sound-output';
 
 export type { LoopRange } from './segment';
+export type { ContextFactory } from './sound-output';
 
 /** What other sounds need to go with the song. */
 export interface Score {
@@ -13,9 +15,6 @@ export interface Score {
   /** How the song lies on the context's clock from now on. */
   segment: Segment;
 }
-
-/** Makes an AudioContext; tests give their own. */
-export type ContextFactory = () => AudioContext;
 
 /** Sources start this much in the future, so that the start is exact to the sample. */
 const START_DELAY = 0.02;
@@ -31,12 +30,10 @@ export const MIN_LOOP = 0.1;
  * run, it starts at the place where the timer will be when the first sample is heard, so the handover has no jump.
  */
 export class Player {
-  readonly #createContext: ContextFactory;
+  readonly #output: SoundOutput;
   readonly #now: () => number;
   readonly #heard = new HeardClock();
   readonly #listeners = new Set<() => void>();
-  #context: AudioContext | null = null;
-  #master: GainNode | null = null;
   #source: SongSource | null = null;
   #buffer: AudioBuffer | null = null;
   #duration = 0;
@@ -46,15 +43,13 @@ export class Player {
   #speed = 1;
   #loop: LoopRange | null = null;
   #bounds: LoopRange | null = null;
-  #volume = 0.9;
-  #muted = false;
 
   /**
    * @param createContext - Makes the AudioContext, called when sound is first wanted.
    * @param now - Milliseconds of a steady clock.
    */
   constructor(createContext: ContextFactory = () => new AudioContext(), now: () => number = () => performance.now()) {
-    this.#createContext = createContext;
+    this.#output = new SoundOutput(createContext, () => this.#onStateChange());
     this.#now = now;
   }
 
@@ -82,15 +77,15 @@ export class Player {
   get score(): Score | null {
     const segment = this.#segments.at(-1);
     if (!this.#playing || !this.#audible() || segment?.clock !== 'audio') return null;
-    return { context: this.#context!, output: this.#master!, segment };
+    return { context: this.#output.context!, output: this.#output.node!, segment };
   }
   /** 0..1. */
   get volume(): number {
-    return this.#volume;
+    return this.#output.volume;
   }
   /** True when no sound is wanted. */
   get muted(): boolean {
-    return this.#muted;
+    return this.#output.muted;
   }
   /** Which clock drives the time now. */
   get clock(): 'audio' | 'timer' {
@@ -194,23 +189,21 @@ export class Player {
 
   /** 0..1. */
   setVolume(volume: number): void {
-    this.#volume = Math.min(Math.max(volume, 0), 1);
-    this.#applyGain();
+    this.#output.volume = volume;
     this.#changed();
   }
 
   /** Turning sound on inside a click also unlocks it in browsers that ask for one. */
   setMuted(muted: boolean): void {
-    this.#muted = muted;
-    this.#applyGain();
+    this.#output.muted = muted;
     if (!muted) this.unlock();
     this.#changed();
   }
 
   /** Opens the sound device; call it in a click. Does nothing while muted. */
   unlock(): void {
-    if (this.#muted) return;
-    const context = this.#ensureContext();
+    if (this.#output.muted) return;
+    const context = this.#output.open();
     if (context.state !== 'running') void context.resume().catch(() => undefined);
     else if (this.#playing && !this.#source) this.#resumeSound();
   }
@@ -230,8 +223,7 @@ export class Player {
   dispose(): void {
     this.pause();
     this.#listeners.clear();
-    void this.#context?.close();
-    this.#context = null;
+    this.#output.close();
   }
 
   get #first(): number {
@@ -261,8 +253,8 @@ export class Player {
   }
 
   #clockTime(clock: Segment['clock']): number {
-    if (clock === 'timer' || !this.#context) return this.#now() / 1000;
-    return this.#heard.read(this.#context, this.#now());
+    const { context } = this.#output;
+    return clock === 'timer' || !context ? this.#now() / 1000 : this.#heard.read(context, this.#now());
   }
 
   #positionOf(segment: Segment, at = this.#clockTime(segment.clock)): number {
@@ -270,26 +262,26 @@ export class Player {
   }
 
   #audible(): boolean {
-    return this.#source !== null && this.#context?.state === 'running';
+    return this.#source !== null && this.#output.running !== null;
   }
 
   /** A fresh start at a position: what was heard before no longer counts. */
   #startAt(position: number): void {
     this.#stopSource();
-    if (!this.#muted) this.#ensureContext();
-    const context = this.#context;
-    if (context && this.#buffer && context.state === 'running') {
-      const from = context.currentTime + START_DELAY;
+    if (!this.#output.muted) this.#output.open();
+    const { running, context, muted } = this.#output;
+    if (running && this.#buffer) {
+      const from = running.currentTime + START_DELAY;
       this.#segments = [this.#startSource(from, position)];
       return;
     }
     this.#segments = [this.#timerSegment(position)];
-    if (context && !this.#muted) void context.resume().catch(() => undefined);
+    if (context && !muted) void context.resume().catch(() => undefined);
   }
 
   /** New speed or loop from where the sound is being rendered, so that the listener hears no jump. */
   #continue(): void {
-    const context = this.#context;
+    const { context } = this.#output;
     const last = this.#segments.at(-1);
     if (!last) return;
     if (last.clock === 'audio' && context && this.#audible()) {
@@ -306,8 +298,8 @@ export class Player {
 
   /** From the timer to the sound: the source starts where the timer will be when its first sample is heard. */
   #resumeSound(): void {
-    const context = this.#context;
-    if (!this.#playing || !this.#buffer || !context || context.state !== 'running' || this.#source) return;
+    const context = this.#output.running;
+    if (!this.#playing || !this.#buffer || !context || this.#source) return;
     this.#heard.reset();
     const timer = this.#segments.at(-1);
     if (!timer) return;
@@ -322,7 +314,7 @@ export class Player {
   }
 
   #startSource(from: number, position: number): Segment {
-    this.#source = new SongSource(this.#context!, this.#master!, this.#buffer!, {
+    this.#source = new SongSource(this.#output.context!, this.#output.node!, this.#buffer!, {
       from,
       position: Math.min(position, Math.max(0, this.#duration - 1e-3)),
       rate: this.#speed,
@@ -336,24 +328,13 @@ export class Player {
     return { clock, from, position, rate: this.#speed, loop: this.#loop, end: this.#last };
   }
 
-  #stopSource(at = this.#context?.currentTime ?? 0): void {
+  #stopSource(at = this.#output.context?.currentTime ?? 0): void {
     this.#source?.stop(at);
     this.#source = null;
   }
 
-  #ensureContext(): AudioContext {
-    if (this.#context) return this.#context;
-    const context = this.#createContext();
-    this.#context = context;
-    this.#master = context.createGain();
-    this.#master.connect(context.destination);
-    this.#applyGain();
-    context.addEventListener('statechange', () => this.#onStateChange());
-    return context;
-  }
-
   #onStateChange(): void {
-    if (this.#context?.state === 'running') {
+    if (this.#output.running) {
       this.#resumeSound();
     } else if (this.#playing && this.#source) {
       // The device was taken away (a call, sleep): the dance goes on silently and the sound joins in again later.
@@ -363,11 +344,6 @@ export class Player {
       this.#segments = [this.#timerSegment(position)];
     }
     this.#changed();
-  }
-
-  #applyGain(): void {
-    if (!this.#master || !this.#context) return;
-    this.#master.gain.setTargetAtTime(this.#muted ? 0 : this.#volume ** 2, this.#context.currentTime, 0.015);
   }
 
   #changed(): void {
