@@ -2,6 +2,7 @@
 import { Color, PerspectiveCamera, Scene, WebGLRenderer } from 'three';
 import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
 import type { FramePose } from '../core/types';
+import type { AvatarFigure, AvatarSource } from './avatar';
 import { Figure } from './figure';
 import { loadFigure } from './figure-asset';
 import { applyLook } from './filming-look';
@@ -11,6 +12,8 @@ import { Lights } from './lights';
 /** One picture. */
 export interface Take {
   pose: FramePose;
+  /** Seconds; a character's hair and skirts swing on from the picture before. */
+  time?: number;
   /** Where the camera is and what it looks at, metres. */
   position: ArrayLike<number>;
   target: ArrayLike<number>;
@@ -27,16 +30,17 @@ export class FilmSet {
   private readonly backdrop = createBackdrop();
   private readonly lights = new Lights(true);
   private readonly camera: PerspectiveCamera;
+  private before = NaN;
 
   private constructor(
     private readonly renderer: WebGLRenderer,
-    private readonly figure: Figure,
+    private readonly dancer: Figure | AvatarFigure,
     aspect: number,
     fieldOfView: number,
     onStage: boolean,
   ) {
     this.camera = new PerspectiveCamera(fieldOfView, aspect, 0.05, 120);
-    this.scene.add(figure.mesh, this.lights.group);
+    this.scene.add('mesh' in dancer ? dancer.mesh : dancer.object, this.lights.group);
     if (onStage) this.scene.add(this.floor.mesh, this.backdrop);
   }
 
@@ -46,6 +50,7 @@ export class FilmSet {
    * @param background `stage`, `none`, or a colour as `#rrggbb`, which the picture has exactly
    * @param fieldOfView vertical, degrees
    * @param look of the figure
+   * @param avatar dances in the figure's place
    * @throws Error when the browser has no WebGL 2 or the figure cannot be loaded
    */
   static async open(
@@ -53,35 +58,41 @@ export class FilmSet {
     background: string,
     fieldOfView: number,
     look: Readonly<FigureLook> = DEFAULT_LOOK,
+    avatar?: AvatarSource,
   ): Promise<FilmSet> {
     const { width, height } = canvas;
     const renderer = createRenderer(canvas, background === 'none');
     renderer.setSize(width, height, false);
     const onStage = background === 'stage';
-    const figure = new Figure(await loadFigure());
-    figure.wear(look);
-    const set = new FilmSet(renderer, figure, width / height, fieldOfView, onStage);
+    const dancer = avatar ? await (await import('./avatar')).openAvatar(avatar) : await dressed(look);
+    const set = new FilmSet(renderer, dancer, width / height, fieldOfView, onStage);
     if (background.startsWith('#')) set.scene.background = new Color(background);
     await renderer.compileAsync(set.scene, set.camera);
     return set;
+  }
+
+  /** How large the dancer is and how far it goes for a metre of the dance, beside our figure. */
+  get dancerSize(): { size: number; stride: number } {
+    return 'size' in this.dancer ? this.dancer : { size: 1, stride: 1 };
   }
 
   /**
    * Draws one picture into the canvas; it is there until the script yields.
    * @throws Error when the graphics card was taken away
    */
-  draw({ pose, position, target, centre, glow }: Take): void {
+  draw({ pose, time = NaN, position, target, centre, glow }: Take): void {
     if (this.renderer.getContext().isContextLost()) {
       throw new Error(
         'The graphics card was needed elsewhere: close other 3D pages, choose a smaller size, try again.',
       );
     }
-    this.figure.show(pose);
+    this.dancer.show(pose, time - this.before || 0);
+    this.before = time;
     this.camera.position.fromArray(Array.from(position));
     this.camera.lookAt(target[0], target[1], target[2]);
     this.floor.follow(centre[0], centre[1]);
     this.floor.glow = glow;
-    this.floor.shade(this.figure.pose.joints);
+    this.floor.shade(this.dancer.pose.joints);
     this.lights.follow(centre[0], centre[1]);
     this.backdrop.position.copy(this.camera.position);
     this.renderer.render(this.scene, this.camera);
@@ -89,13 +100,19 @@ export class FilmSet {
 
   /** Frees everything. */
   dispose(): void {
-    this.figure.dispose();
+    this.dancer.dispose();
     this.floor.dispose();
     this.lights.dispose();
     this.backdrop.geometry.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
   }
+}
+
+async function dressed(look: Readonly<FigureLook>): Promise<Figure> {
+  const figure = new Figure(await loadFigure());
+  figure.wear(look);
+  return figure;
 }
 
 function createRenderer(canvas: OffscreenCanvas, alpha: boolean): WebGLRenderer {

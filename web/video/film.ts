@@ -14,6 +14,7 @@ import { framePose } from '../core/motion';
 import { FilmSet } from '../scene/filming';
 import { cameraPath, FIELD_OF_VIEW } from './camera-path';
 import { audioQuality, formatSupport, probe, videoQuality } from './codecs';
+import { fitPath } from './dancer-path';
 import { frameTime, type VideoFormat } from './options';
 import type { EncoderWish, FilmRequest } from './protocol';
 import { glowAt } from './shots';
@@ -109,10 +110,12 @@ export async function film(
   const codecs = await formatSupport(format, wish);
   signal.throwIfAborted();
   const canvas = new OffscreenCanvas(width, height);
-  const set = await FilmSet.open(canvas, request.background, FIELD_OF_VIEW, request.look);
+  const set = await FilmSet.open(canvas, request.background, FIELD_OF_VIEW, request.look, request.avatar);
   let output: Output | null = null;
   try {
-    const path = cameraPath(motion, plan, width / height, request.camera, grid, request.view);
+    const { camera, view } = request;
+    const path = cameraPath(motion, plan, width / height, camera, grid, view);
+    fitPath(path, set.dancerSize, camera === 'stage' ? view : null);
     signal.throwIfAborted();
     const disk = file && (await DiskFile.open(file));
     const target = disk ? disk.target : new BufferTarget();
@@ -134,6 +137,7 @@ export async function film(
       pose = framePose(motion, time, pose);
       set.draw({
         pose,
+        time,
         position: path.position.subarray(frame * 3, frame * 3 + 3),
         target: path.target.subarray(frame * 3, frame * 3 + 3),
         centre: path.centre.subarray(frame * 2, frame * 2 + 2),

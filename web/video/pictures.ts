@@ -6,6 +6,7 @@ import { FilmSet } from '../scene/filming';
 import { headingOf } from '../scene/heading';
 import { PALETTE } from '../ui/palette';
 import { cameraPath, FIELD_OF_VIEW, type CameraPath } from './camera-path';
+import { fitPath } from './dancer-path';
 import { GIF_COLOURS, GifWriter } from './gif';
 import { GifPalette } from './gif-palette';
 import { frameTime } from './options';
@@ -40,6 +41,7 @@ function take(set: FilmSet, request: SceneRequest, path: CameraPath, frame: numb
   const time = frameTime(request.plan, frame);
   set.draw({
     pose: framePose(request.motion, time),
+    time,
     position: path.position.subarray(frame * 3, frame * 3 + 3),
     target: path.target.subarray(frame * 3, frame * 3 + 3),
     centre: path.centre.subarray(frame * 2, frame * 2 + 2),
@@ -47,15 +49,20 @@ function take(set: FilmSet, request: SceneRequest, path: CameraPath, frame: numb
   });
 }
 
-function pathOf({ motion, plan, width, height, camera, grid, view }: SceneRequest): CameraPath {
-  return cameraPath(motion, plan, width / height, camera, grid, view);
+function pathOf({ motion, plan, width, height, camera, grid, view }: SceneRequest, set: FilmSet): CameraPath {
+  const path = cameraPath(motion, plan, width / height, camera, grid, view);
+  return fitPath(path, set.dancerSize, camera === 'stage' ? view : null);
+}
+
+function setOf({ background, look, avatar }: SceneRequest, canvas: OffscreenCanvas): Promise<FilmSet> {
+  return FilmSet.open(canvas, background, FIELD_OF_VIEW, look, avatar);
 }
 
 async function still(request: SceneRequest): Promise<Blob> {
   const canvas = new OffscreenCanvas(request.width, request.height);
-  const set = await FilmSet.open(canvas, request.background, FIELD_OF_VIEW, request.look);
+  const set = await setOf(request, canvas);
   try {
-    take(set, request, pathOf(request), 0);
+    take(set, request, pathOf(request, set), 0);
     return await canvas.convertToBlob({ type: 'image/png' });
   } finally {
     set.dispose();
@@ -101,9 +108,9 @@ async function loop(request: SceneRequest, progress: (done: number) => void, sig
   const flat = new OffscreenCanvas(width, height);
   const brush = flat.getContext('2d', { willReadFrequently: true });
   if (!brush) throw new Error('This browser cannot draw the picture: close other tabs and try again.');
-  const set = await FilmSet.open(canvas, request.background, FIELD_OF_VIEW, request.look);
+  const set = await setOf(request, canvas);
   try {
-    const path = pathOf(request);
+    const path = pathOf(request, set);
     const pixels = (frame: number) => {
       take(set, request, path, frame);
       brush.drawImage(canvas, 0, 0);

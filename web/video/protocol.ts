@@ -2,6 +2,7 @@
 import type { CameraView } from '../core/document';
 import type { FigureLook } from '../core/figure-look';
 import type { BeatGrid, Motion } from '../core/types';
+import type { AvatarSource } from '../scene/avatar';
 import type { FramePlan, VideoCamera, VideoFormat } from './options';
 import type { SheetPose } from './sheet-layout';
 import type { Sound } from './sound';
@@ -41,6 +42,8 @@ export interface SceneRequest {
   background: string;
   /** What our own figure wears. */
   look: FigureLook;
+  /** A character of the visitor's own in the figure's place. */
+  avatar?: AvatarSource;
   grid: BeatGrid | null;
 }
 

@@ -26,13 +26,20 @@ export function stillActions({ state, services }: Context) {
   const make = (call: PictureCall, { onProgress, signal }: PictureHooks) =>
     draw(call, (done) => onProgress?.(done), signal ?? new AbortController().signal);
 
-  const scene = (): Pick<SceneRequest, 'motion' | 'view' | 'look' | 'grid'> => {
+  const scene = (): Pick<SceneRequest, 'motion' | 'view' | 'look' | 'avatar' | 'grid'> => {
     const dance = state.onStage.value;
     if (!dance || dance.kind === 'preview') {
       throw new Error('There is no dance yet: drop a song and press Generate, then save a picture of it.');
     }
     const { camera, look } = state.document.value;
-    return { motion: dance.motion, view: camera, look: look ?? DEFAULT_LOOK, grid: state.grid.value };
+    const avatar = state.avatar.value?.source;
+    return {
+      motion: dance.motion,
+      view: camera,
+      look: look ?? DEFAULT_LOOK,
+      ...(avatar ? { avatar } : {}),
+      grid: state.grid.value,
+    };
   };
 
   return {

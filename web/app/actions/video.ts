@@ -140,6 +140,7 @@ export function videoActions(context: Context) {
           background: settings.background,
           view: state.document.value.camera,
           look: state.document.value.look ?? DEFAULT_LOOK,
+          ...(state.avatar.value ? { avatar: state.avatar.value.source } : {}),
           grid: state.grid.value,
           sound: settings.sound && song?.buffer ? soundOf(song.buffer, plan) : null,
           format: settings.format,
