@@ -210,6 +210,18 @@ describe('VRM files', () => {
     expectSameLimbs(rig, two, poseOfFrame(clips[0], 0));
   });
 
+  it('with an animation alone (.vrma) are told by their humanoid too, and come back whole', () => {
+    const humanBones = Object.fromEntries(Object.keys(bones).map((bone) => [bone, { node: node(bone) }]));
+    const extensions = { VRMC_vrm_animation: { specVersion: '1.0', humanoid: { humanBones } } };
+    const keys = { times: [0, 0.5, 2], poses: [still, one, two] };
+    const { kind, clips } = readGltf(glb(anonymous, { extensions, keys }));
+    const [clip] = clips;
+    expect(kind).toBe('VRM');
+    expect((clip.frames - 1) / clip.fps).toBeCloseTo(2, 5);
+    expectSameLimbs(rig, one, poseOfFrame(clip, Math.round(0.5 * clip.fps)));
+    expectSameLimbs(rig, two, poseOfFrame(clip, clip.frames - 1));
+  });
+
   it('of version 0 look ahead although their space looks back', () => {
     const about = axisAngleToQuaternion([0, Math.PI, 0]);
     const backward = anonymous.map((joint) => ({
