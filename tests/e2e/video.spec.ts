@@ -170,6 +170,75 @@ test('a video goes straight to the disk; a cancelled one leaves nothing there', 
   expect(Math.abs(found.audioEnd - 2)).toBeLessThan(1 / FPS);
 });
 
+/** A PNG that the page made: its size, how much of it is drawn on, and how bright that is, all of it 0..1. */
+async function looked(page: Page, call: string) {
+  return page.evaluate(async (source) => {
+    const blob = (await new Function(`return window.posebeat.${source}`)()) as Blob;
+    const picture = await createImageBitmap(blob);
+    const canvas = new OffscreenCanvas(picture.width, picture.height);
+    const brush = canvas.getContext('2d')!;
+    brush.drawImage(picture, 0, 0);
+    const { data } = brush.getImageData(0, 0, picture.width, picture.height);
+    let [drawn, light] = [0, 0];
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i + 3] < 128) continue;
+      drawn++;
+      light += (data[i] + data[i + 1] + data[i + 2]) / 765;
+    }
+    const size = [picture.width, picture.height];
+    return { type: blob.type, size, corner: data[3], drawn: drawn / (data.length / 4), light: light / drawn };
+  }, call);
+}
+
+test('pictures: the stage, transparent, in another style, and all key poses on a sheet', async ({ page }) => {
+  const errors = collectErrors(page);
+  await openPanel(page);
+  await page.keyboard.press('Escape');
+  const cutOut = `exportPicture({ size: 180, aspect: '9:16', background: 'none', camera: 'front' })`;
+  const studio = await looked(page, cutOut);
+  expect(studio).toMatchObject({ type: 'image/png', size: [180, 320], corner: 0 });
+  expect(studio.drawn).toBeGreaterThan(0.05);
+  expect(studio.drawn).toBeLessThan(0.6);
+
+  await page.getByRole('tab', { name: 'Dance' }).click();
+  await page.locator('.figure-fold summary').click();
+  // By keyboard, as radio buttons go: the last style is before the first.
+  await page.getByRole('radio', { name: 'Studio' }).focus();
+  await page.keyboard.press('ArrowLeft');
+  await expect(page.getByRole('radio', { name: 'Neon' })).toBeChecked();
+  expect(await page.evaluate(() => window.posebeat.document().look)).toEqual({ style: 'neon', colours: 'sky' });
+  const neon = await looked(page, cutOut);
+  expect(Math.abs(neon.drawn - studio.drawn)).toBeLessThan(0.02);
+  expect(neon.light).toBeLessThan(studio.light * 0.8);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await expect(page.getByRole('radio', { name: 'Studio' })).toBeChecked();
+
+  await page.keyboard.press('Control+Shift+E');
+  await page.getByRole('radio', { name: 'Video', exact: true }).focus();
+  await page.keyboard.press('ArrowRight');
+  const still = page.getByRole('dialog', { name: 'Save a picture' });
+  await expect(still.getByRole('img')).toBeVisible({ timeout: 60_000 });
+  await page.keyboard.press('ArrowRight');
+  const sheet = page.getByRole('dialog', { name: 'Key poses as a picture' });
+  await expect(sheet.getByRole('img', { name: 'Contact sheet of 2 key poses' })).toBeVisible({ timeout: 60_000 });
+  const { violations } = await new AxeBuilder({ page }).include('.video-panel').analyze();
+  expect(violations.map(({ id }) => id)).toEqual([]);
+  const [download] = await Promise.all([
+    page.waitForEvent('download', { timeout: 120_000 }),
+    sheet.getByRole('button', { name: 'Save PNG' }).click(),
+  ]);
+  expect(download.suggestedFilename()).toMatch(/ key poses\.png$/);
+  const file = readFileSync(await download.path());
+  // Width and height stand in the first chunk of a PNG.
+  expect([file.readUInt32BE(16), file.readUInt32BE(20) > 500]).toEqual([2400, true]);
+
+  const loop = page.evaluate(() => window.posebeat.exportLoop({ signal: AbortSignal.timeout(300) }));
+  expect(await rejection(loop)).toMatch(/abort|time/i);
+  await page.evaluate(() => window.posebeat.setKeyPoses([]));
+  await expect(sheet).toContainText('There are no key poses yet');
+  expect(errors).toEqual([]);
+});
+
 test.describe('a browser without', () => {
   /** The worker's script with a line before it. */
   const without = async (page: Page, line: string) => {
