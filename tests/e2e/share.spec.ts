@@ -1,7 +1,7 @@
 import { expect, test, type Browser, type Page } from '@playwright/test';
 import { violations } from './support/axe';
 import { misplaced } from './support/layout';
-import { collectErrors, fourPoses, loadSong, open } from './support/page';
+import { collectErrors, fourPoses, loadSong, open, reload, saved } from './support/page';
 import { wav } from './support/songs';
 
 const SONG = wav({ seconds: 6 });
@@ -72,22 +72,18 @@ test('a link takes nothing from the project at hand: one press, and a reload, br
   await loadSong(page, SONG, 'Mine.wav');
   await place(page, [1, 2.5, 4]);
   const mine = await json(page);
-  await page.waitForTimeout(1200);
+  await saved(page);
 
   await page.evaluate((hash) => (location.hash = hash), hash);
   await expect.poll(() => page.evaluate(() => window.posebeat.document().keyPoses.length)).toBe(2);
-  await page.reload();
-  await page.waitForFunction(() => 'posebeat' in window);
-  await page.evaluate(() => window.posebeat.ready);
+  await reload(page);
   // The link is still in the address; the own project lies behind it.
   expect(await page.evaluate(() => window.posebeat.document().keyPoses.length)).toBe(2);
   await page.locator('.notice', { hasText: 'Your own project is kept.' }).getByRole('button', { name: 'Undo' }).click();
   await expect.poll(() => json(page)).toBe(mine);
   await expect(page.locator('.song-title')).toContainText('Mine.wav');
   expect(new URL(page.url()).hash).toBe('');
-  await page.reload();
-  await page.waitForFunction(() => 'posebeat' in window);
-  await page.evaluate(() => window.posebeat.ready);
+  await reload(page);
   expect(await json(page)).toBe(mine);
   // And it lies aside, too, for later.
   await page.getByRole('button', { name: 'Save the project' }).click();
