@@ -60,7 +60,7 @@ export function Share() {
 /** The link as far as there is one: made anew whenever the project changes under the open panel. */
 function Panel() {
   const store = useStore();
-  const { document, song } = store.state;
+  const { document, song, avatar } = store.state;
   const made = useComputed(() => {
     void document.value;
     try {
@@ -93,6 +93,7 @@ function Panel() {
             {played ? ', beats played by hand to a millisecond' : ''}.
             {name &&
               ` The song is not in it: whoever opens it is asked for “${name}”, and sees the dance to the demo’s song until then.`}
+            {avatar.value && ' Your own character stays here: others see Posebeat’s figure.'}
             {link.length > SAFE_LINK &&
               ` It has ${link.length.toLocaleString('en')} characters; some chat programs cut what is longer than ${SAFE_LINK.toLocaleString('en')}: a .posebeat file is safer there.`}
           </p>
