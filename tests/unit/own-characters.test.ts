@@ -9,6 +9,7 @@ import { readAvatarRig } from '../../web/core/avatar/rig';
 import { guessBones } from '../../web/core/avatar/guess';
 import { jointIndex } from '../../web/core/skeleton';
 import { REST_HEIGHT } from '../../web/core/rest';
+import { fitPath } from '../../web/video/dancer-path';
 import { fakeReporter, fakeServices } from './support/app';
 import { anonymousGlb, chairGlb, mixamoGlb, mixamoName, vrm1File } from './support/avatar-rigs';
 
@@ -204,5 +205,33 @@ describe('the file', () => {
       expect(at(joints, 'head')[1]).toBeLessThan(figure.height);
       figure.dispose();
     }
+  });
+});
+
+describe('the camera of a film', () => {
+  const path = () => ({
+    position: Float32Array.of(2, 1.5, 7),
+    target: Float32Array.of(2, 1, 3),
+    centre: Float32Array.of(2, 3),
+  });
+  const small = { size: 0.5, stride: 0.6 };
+
+  it('stands before a small dancer as it would before our figure', () => {
+    const { position, target, centre } = fitPath(path(), small, null);
+    const rounded = (values: Float32Array) => Array.from(values, (value) => Number(value.toFixed(5)));
+    expect(rounded(centre)).toEqual([1.2, 1.8]);
+    expect(rounded(target)).toEqual([1.2, 0.5, 1.8]);
+    expect(rounded(position)).toEqual([1.2, 0.75, 3.8]);
+    expect(fitPath(path(), { size: 1, stride: 1 }, null)).toEqual(path());
+  });
+
+  it('keeps the visitor’s own view, which goes with the dancer or stands still', () => {
+    const view = { position: [0, 1.5, 4] as [number, number, number], target: [0, 1, 0] as [number, number, number] };
+    const going = fitPath(path(), small, { ...view, follows: true });
+    expect(going.target[0]).toBeCloseTo(1.2, 5);
+    expect(going.position[2] - going.target[2]).toBeCloseTo(4, 5);
+    expect(going.position[1]).toBeCloseTo(1.5, 5);
+    const still = fitPath(path(), small, { ...view, follows: false });
+    expect(still.position).toEqual(path().position);
   });
 });

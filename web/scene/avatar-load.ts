@@ -10,7 +10,7 @@ import {
   type Object3D,
 } from 'three';
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
-import type { VRM } from '@pixiv/three-vrm';
+import type { MToonMaterial, VRM } from '@pixiv/three-vrm';
 
 /** A file as three has it. */
 export interface LoadedAvatar {
@@ -23,6 +23,8 @@ export interface LoadedAvatar {
 
 /** The stage has nothing around it that metal could mirror: all metal would be black. */
 const MOST_METAL = 0.3;
+/** Toon materials take every lamp in full, those behind them too: one lamp is what they are painted for. */
+const TOON_LIGHT = 0.6;
 /** Any pose of a dancer fits in a ball this many times its height. */
 const REACH = 1.2;
 
@@ -47,6 +49,7 @@ export async function loadAvatar(bytes: Uint8Array, isVrm: boolean): Promise<Loa
     const known = nodes[node];
     if (!known || isAbove(object, known)) nodes[node] = object;
   }
+  suitLight(gltf.scene);
   return { scene: gltf.scene, nodes, vrm: (gltf.userData.vrm as VRM | undefined) ?? null };
 }
 
@@ -77,14 +80,27 @@ function isAbove(object: Object3D, other: Object3D): boolean {
   return false;
 }
 
+/** Makes materials fit the stage's lamps. */
+function suitLight(scene: Object3D): void {
+  const materials = new Set<Material>();
+  scene.traverse((object) => {
+    if (object instanceof Mesh) for (const each of [object.material].flat() as Material[]) materials.add(each);
+  });
+  for (const material of materials) {
+    if (material instanceof MeshStandardMaterial) material.metalness = Math.min(material.metalness, MOST_METAL);
+    const toon = material as Partial<MToonMaterial>;
+    if (!toon.isMToonMaterial) continue;
+    toon.color?.multiplyScalar(TOON_LIGHT);
+    toon.shadeColorFactor?.multiplyScalar(TOON_LIGHT);
+  }
+}
+
 /** Makes the meshes ready for a stage: they cast shadows and are drawn wherever their bones take them. */
 export function prepareMeshes(scene: Object3D, height: number): void {
   scene.traverse((object) => {
     if (!(object instanceof Mesh)) return;
     object.castShadow = true;
     object.receiveShadow = true;
-    for (const material of [object.material].flat() as Material[])
-      if (material instanceof MeshStandardMaterial) material.metalness = Math.min(material.metalness, MOST_METAL);
     if (!(object instanceof SkinnedMesh)) return;
     object.frustumCulled = false;
     // Without it three would skin every vertex on the CPU to sort the scene.
