@@ -6,6 +6,8 @@ const LONGEST_FOOT = 0.45;
 const LONGEST_COLLAR = 0.8;
 /** Cosine of 30 degrees: where a leg turns by more, the foot begins. */
 const FOOT_TURN = 0.87;
+/** What a bone in the middle of a limb costs: few have more than two. */
+const SKIPPED = 0.25;
 
 /** Length along the chain up to each bone. */
 function lengths(places: readonly Vector[]): number[] {
@@ -24,7 +26,7 @@ function bestThree(
   for (let a = 0; a < count - 2; a++) {
     for (let b = a + 1; b < count - 1; b++) {
       for (let c = b + 1; c < count; c++) {
-        const value = cost(a, b, c);
+        const value = cost(a, b, c) + SKIPPED * (c - a - 2);
         if (value < least) [least, best] = [value, [a, b, c]];
       }
     }
@@ -48,7 +50,8 @@ export function splitLeg(chain: readonly number[], places: readonly Vector[], up
   const [hip, knee, ankle] = bestThree(chain.length, (h, k, a) => {
     const [thigh, shin, foot] = [sum[k] - sum[h], sum[a] - sum[k], (total - sum[a]) / total];
     const last = a === chain.length - 1;
-    const end = last ? 0.3 : 4 * Math.max(0, foot - LONGEST_FOOT) + (turnsAt(a) ? 0 : 0.3);
+    // What lies level at the end of a leg is a foot, not a shin.
+    const end = last ? 0.3 + (turnsAt(a - 1) ? 0.5 : 0) : 4 * Math.max(0, foot - LONGEST_FOOT) + (turnsAt(a) ? 0 : 0.3);
     return 4 * Math.log(thigh / shin) ** 2 + 3 * (sum[h] / total) + end + 1 - (thigh + shin) / total;
   });
   return {
@@ -71,7 +74,7 @@ export function splitArm(chain: readonly number[], places: readonly Vector[], en
   const [shoulder, elbow, wrist] = bestThree(chain.length, (s, e, w) => {
     if (ends && w !== chain.length - 1) return Infinity;
     const [upper, fore, hand] = [sum[e] - sum[s], sum[w] - sum[e], total - sum[w]];
-    const collar = s === 0 ? 0.1 : 3 * Math.max(0, sum[s] / upper - LONGEST_COLLAR);
+    const collar = s === 0 ? 0.3 : 3 * Math.max(0, sum[s] / upper - LONGEST_COLLAR);
     const tail = 3 * Math.max(0, hand / fore - LONGEST_COLLAR);
     return 4 * Math.log(upper / fore) ** 2 + collar + tail + 1 - (upper + fore) / total;
   });
