@@ -143,6 +143,8 @@ export function curveActions(
     /** The curve view under the timeline. */
     toggleCurveView(open = !state.curvesOpen.value): void {
       state.curvesOpen.value = open;
+      // On small screens the panel lies over the timeline.
+      if (open) state.sheetOpen.value = false;
       if (open && !state.dance.value?.curves) {
         context.announce('There are no curves yet: choose editable curves in the Dance panel and generate.');
       }
