@@ -49,7 +49,7 @@ const files: fc.Arbitrary<Partial<FileOptions>> = fc.record({
   axes: fc.constantFrom('world', 'along', 'wild'),
   facing: fc.constantFrom([0, 0, 0, 1], [0, 1, 0, 0], [0, Math.SQRT1_2, 0, Math.SQRT1_2]),
   armature: fc.record({
-    rotation: fc.constantFrom([0, 0, 0, 1], axisAngleToQuaternion([-Math.PI / 2, 0, 0])),
+    rotation: fc.constantFrom([0, 0, 0, 1], axisAngleToQuaternion<number[]>([-Math.PI / 2, 0, 0])),
     scale: fc.constantFrom(1, 0.01),
   }),
 });
