@@ -65,8 +65,8 @@ float paintRoughness = 0.92;`;
 /** Turned beech; the balls of the joints lacquered in their side's colour. */
 const MANNEQUIN = /* glsl */ `
 float along = reach > 0.25 && vRest.y > 1.0 ? vRest.x : vRest.y;
-vec2 across = reach > 0.25 && vRest.y > 1.0 ? vec2(vRest.y * 1.0, vRest.z) : vec2(vRest.x, vRest.z);
-float rings = length(across + vec2(0.011, 0.16)) * 520.0 + 2.2 * sin(along * 9.0 + part) + 0.8 * sin(along * 31.0);
+vec2 across = reach > 0.25 && vRest.y > 1.0 ? vec2(vRest.y, vRest.z) : vec2(vRest.x, vRest.z);
+float rings = length(across + vec2(0.011, 0.16)) * 520.0 + 2.4 * sin(along * 13.0);
 float grain = sin(rings) * clamp(1.4 - fwidth(rings) * 0.45, 0.0, 1.0);
 vec3 wood = mix(vec3(0.64, 0.39, 0.195), vec3(0.82, 0.565, 0.325), 0.62 + 0.2 * grain);
 vec3 paint = part > 0.5 ? (part > 1.5 ? vec3(0.20, 0.105, 0.05) : side) : wood;

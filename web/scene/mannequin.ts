@@ -151,7 +151,7 @@ const PIECES: readonly Piece[] = [...MIDDLE, ...LEFT, ...LEFT.map(mirrored)];
 /** Corners round a piece and rings along it, per level of detail. */
 const LEVELS = [
   { sides: 22, rings: 18 },
-  { sides: 16, rings: 12 },
+  { sides: 14, rings: 10 },
   { sides: 10, rings: 8 },
 ] as const;
 

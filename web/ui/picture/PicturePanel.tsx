@@ -29,7 +29,7 @@ const SMALL = 360;
 /** The moment at the playhead as a picture. */
 export function PicturePanel() {
   const store = useStore();
-  const { document, song, playing } = store.state;
+  const { document, song, playing, avatar } = store.state;
   const [aspect, size] = [choice.aspect.value, choice.size.value];
   const options: PictureOptions = {
     aspect,
@@ -39,8 +39,9 @@ export function PicturePanel() {
   // A dance that plays under the panel must not make a picture for every frame.
   const time = playing.value ? store.state.time.peek() : store.state.time.value;
   const { camera, look } = document.value;
-  const preview = usePreview(JSON.stringify([options, playing.value || time, camera, look]), (hooks) =>
-    store.exportPicture({ ...options, ...hooks, size: SMALL }),
+  const preview = usePreview(
+    JSON.stringify([options, playing.value || time, camera, look, avatar.value?.id]),
+    (hooks) => store.exportPicture({ ...options, ...hooks, size: SMALL }),
   );
   const { width, height } = videoSize(aspect, size);
   const name = fileName(`${song.value?.reference.name ?? 'dance'}`, 'png');
