@@ -59,7 +59,7 @@ async function expectFeetOnFloor(page: Page): Promise<void> {
 
 test('a character of one’s own dances, is kept, and leaves as a file with the dance', async ({ page }) => {
   const errors = collectErrors(page);
-  await page.setViewportSize({ width: 800, height: 500 });
+  await page.setViewportSize({ width: 900, height: 560 });
   await open(page);
 
   await drop(page, mixamoGlb(), 'Robo.glb');
