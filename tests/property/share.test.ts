@@ -275,7 +275,7 @@ describe('1,000 damaged', () => {
         const text = mutated(link, random);
         if (isWhole(() => readLink(text))) continue;
         expect(await store.openLink(text)).toBe(false);
-      } else await store.openProject(new File([mutated<Uint8Array>(whole, random)], 'theirs.posebeat'));
+      } else await store.openProject(new File([mutated<Uint8Array<ArrayBuffer>>(whole, random)], 'theirs.posebeat'));
       expect(store.state.notices.value.length).toBeGreaterThan(0);
       expect(store.state.document.value).toBe(open);
     }
