@@ -181,10 +181,39 @@ export const STATES: readonly PageState[] = [
     },
   },
   {
+    name: 'export panel, curves chosen',
+    scope: '.export-panel',
+    go: async (page) => {
+      await escape(page);
+      await page.keyboard.press('Control+e');
+      await page.locator('.export-card').filter({ hasText: 'Curves' }).click();
+      await button(page, 'Dance it as curves').waitFor();
+    },
+  },
+  {
+    name: 'suggest menu',
+    scope: '.suggest-menu',
+    go: async (page) => {
+      await escape(page);
+      await reveal(page, '.suggest-tools');
+      await button(page, 'What to suggest').click();
+      await page.getByRole('dialog', { name: 'What to suggest' }).waitFor();
+    },
+  },
+  {
+    name: 'curves under the timeline, none there yet',
+    scope: '.timeline',
+    go: async (page) => {
+      await escape(page);
+      await page.keyboard.press('c');
+      await page.locator('.curve-tools').waitFor();
+    },
+  },
+  {
     name: 'comparison',
     scope: '.stage, .timeline-bar',
     go: async (page) => {
-      await escape(page);
+      await button(page, 'Hide the curves').click();
       await page.keyboard.press('a');
       await page.locator('.compare-badge').waitFor();
     },
