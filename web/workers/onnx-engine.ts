@@ -93,10 +93,7 @@ export class ModelEngine<I, O, G> {
     const choosing = chooseBackend(options.backend);
     // The runtime comes while the weights do; what is wrong with it is said when it is used.
     void choosing.then(({ backend }) => openRuntime(backend, 1)).catch(() => undefined);
-    const [stored, choice] = await Promise.all([
-      loadModel(options.folder, options.onProgress, kind.files),
-      choosing,
-    ]);
+    const [stored, choice] = await Promise.all([loadModel(options.folder, options.onProgress, kind.files), choosing]);
     const model = `${stored.manifest.name} (${stored.manifest.precision})`;
     const threads = threadsAvailable(options.threads);
     let reason = choice.reason;
