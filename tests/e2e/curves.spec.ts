@@ -43,7 +43,7 @@ async function openCurves(page: Page): Promise<void> {
 }
 
 /** Saves the dance's curves through the export panel, which is open then. */
-async function saved(page: Page, as: 'GLB' | 'JSON'): Promise<Buffer> {
+async function exported(page: Page, as: 'GLB' | 'JSON'): Promise<Buffer> {
   const panel = page.getByRole('dialog', { name: 'Export the dance' });
   await panel.locator('.export-options label').filter({ hasText: as }).click();
   const [download] = await Promise.all([
@@ -100,8 +100,8 @@ test('suggested, one pose changed, danced as curves, one bent, undone, exported 
 
   await page.keyboard.press('Control+e');
   await page.locator('.export-card').filter({ hasText: 'Curves' }).click();
-  const file = JSON.parse((await saved(page, 'JSON')).toString()) as CurveFile;
-  const bytes = await saved(page, 'GLB');
+  const file = JSON.parse((await exported(page, 'JSON')).toString()) as CurveFile;
+  const bytes = await exported(page, 'GLB');
   await page.keyboard.press('Escape');
   expect(file).toMatchObject({ format: 'posebeat-curves', version: 1 });
   expect(file.keys.flatMap(({ pose }) => pose ?? [])).toEqual(changed.map(({ id }) => id));
