@@ -3,7 +3,7 @@ import { expect, test, type Page } from '@playwright/test';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { AnimationMixer, Vector3, type Object3D } from 'three';
 import { evaluate, type CurveFile } from './support/curves';
-import { fourPoses, loadSong, open, rejection } from './support/page';
+import { fourPoses, loadSong, open, rejection, reload, saved } from './support/page';
 import { wav } from './support/songs';
 
 const SECONDS = 8;
@@ -207,10 +207,8 @@ test('a knot is dragged live, Escape takes it back, letting go is one step; arro
   // It is still there on the next visit, dance and all.
   const kept = await edits(page);
   const bent = await rotations(page);
-  await page.waitForTimeout(1500);
-  await page.reload();
-  await page.waitForFunction(() => 'posebeat' in window);
-  await page.evaluate(() => window.posebeat.ready);
+  await saved(page, { dance: true });
+  await reload(page);
   expect(await edits(page)).toEqual(kept);
   await expect.poll(async () => apart(await rotations(page), bent)).toBeLessThan(1e-6);
 
