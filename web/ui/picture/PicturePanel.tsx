@@ -4,6 +4,7 @@ import { pictureSettings, videoSize, type PictureOptions, type VideoAspect } fro
 import { Segments } from '../export/Segments';
 import { fileName } from '../files';
 import { useStore } from '../store-context';
+import { GroundField, SizeField } from '../video/fields';
 import { savePicture, usePreview } from './make';
 import { SaveButton } from './SaveButton';
 
@@ -18,11 +19,12 @@ const choice = {
   colour: signal('#00b140'),
 };
 
-const SIZES = [
-  { value: 720, label: '720 pixels' },
-  { value: 1080, label: '1080 pixels (Full HD)' },
-  { value: 2160, label: '2160 pixels (4K)' },
-] as const;
+const SIZE_LABELS: Readonly<Record<number, string>> = {
+  720: '720 pixels',
+  1080: '1080 pixels (Full HD)',
+  2160: '2160 pixels (4K)',
+};
+const SIZES = Object.keys(SIZE_LABELS).map(Number);
 /** Pixels along the shorter edge of the preview, on screens of all kinds. */
 const SMALL = 360;
 
@@ -66,16 +68,7 @@ export function PicturePanel() {
           ]}
           onChange={(value) => (choice.aspect.value = value)}
         />
-        <label class="field video-size">
-          <span>Shorter edge</span>
-          <select value={size} onChange={(event) => (choice.size.value = Number(event.currentTarget.value))}>
-            {SIZES.map(({ value, label }) => (
-              <option key={value} value={value}>
-                {label}
-              </option>
-            ))}
-          </select>
-        </label>
+        <SizeField label="Shorter edge" size={choice.size} sizes={SIZES} text={(each) => SIZE_LABELS[each]} />
       </div>
       <div class="export-options">
         <Segments
@@ -89,27 +82,16 @@ export function PicturePanel() {
           ]}
           onChange={(value) => (choice.camera.value = value)}
         />
-        <div class="video-ground">
-          <Segments<Ground>
-            legend="Background"
-            name="picture-ground"
-            value={choice.ground.value}
-            options={[
-              { value: 'stage', label: 'Stage' },
-              { value: 'none', label: 'None', title: 'Transparent: to be put on anything' },
-              { value: 'colour', label: 'Colour' },
-            ]}
-            onChange={(value) => (choice.ground.value = value)}
-          />
-          {choice.ground.value === 'colour' && (
-            <input
-              type="color"
-              aria-label="Colour of the background"
-              value={choice.colour.value}
-              onInput={(event) => (choice.colour.value = event.currentTarget.value)}
-            />
-          )}
-        </div>
+        <GroundField
+          name="picture-ground"
+          ground={choice.ground}
+          colour={choice.colour}
+          options={[
+            { value: 'stage', label: 'Stage' },
+            { value: 'none', label: 'None', title: 'Transparent: to be put on anything' },
+            { value: 'colour', label: 'Colour' },
+          ]}
+        />
       </div>
       <div class="export-foot">
         <p>
