@@ -1,8 +1,8 @@
 /** Draws a contact sheet: heading, cells with their words, and the figures as they come. */
+import { diamond, fit, font, write, type Brush } from './brush';
 import type { SheetRequest } from './protocol';
 import { SHEET, type Cell, type SheetLayout } from './sheet-layout';
 
-type Brush = OffscreenCanvasRenderingContext2D;
 /** Colours as `#rrggbb`. */
 interface Colours {
   ground: string;
@@ -12,9 +12,6 @@ interface Colours {
   muted: string;
   key: string;
 }
-
-const FAMILY = 'Inter, system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
-const font = (size: number, weight: number) => `${weight} ${size}px ${FAMILY}`;
 
 /**
  * Draws all but the figures.
@@ -32,8 +29,7 @@ export function drawSheet(
   const left = SHEET.margin;
   const right = layout.width - SHEET.margin;
   brush.textAlign = 'right';
-  write(brush, 'Posebeat', right, 92, font(32, 650), colours.text);
-  const mark = right - brush.measureText('Posebeat').width - 30;
+  const mark = right - write(brush, 'Posebeat', right, 92, font(32, 650), colours.text) - 30;
   diamond(brush, mark, 81, 13, colours.key);
   brush.textAlign = 'left';
   write(brush, fit(brush, title, mark - left - 80, font(52, 650)), left, 96, font(52, 650), colours.text);
@@ -82,29 +78,4 @@ function pool(brush: Brush, x: number, y: number, radius: number, colour: string
   brush.fillStyle = light;
   brush.fillRect(-radius, -radius, 2 * radius, 2 * radius);
   brush.restore();
-}
-
-function write(brush: Brush, text: string, x: number, y: number, face: string, colour: string): void {
-  brush.font = face;
-  brush.fillStyle = colour;
-  brush.fillText(text, x, y);
-}
-
-/** As much of a text as fits. */
-function fit(brush: Brush, text: string, width: number, face: string): string {
-  brush.font = face;
-  if (brush.measureText(text).width <= width) return text;
-  let end = text.length;
-  while (end > 1 && brush.measureText(`${text.slice(0, end)}…`).width > width) end -= 1;
-  return `${text.slice(0, end).trimEnd()}…`;
-}
-
-function diamond(brush: Brush, x: number, y: number, half: number, colour: string): void {
-  brush.fillStyle = colour;
-  brush.beginPath();
-  brush.moveTo(x, y - half);
-  brush.lineTo(x + half, y);
-  brush.lineTo(x, y + half);
-  brush.lineTo(x - half, y);
-  brush.fill();
 }

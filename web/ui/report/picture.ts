@@ -1,6 +1,7 @@
 /** Draws the picture of two dances (paper A, figure 8): music on top, below it each dance as a strip of figures, key poses framed. */
 import { clockTime, lowerBound } from '../../app/snapping';
 import type { BeatGrid, Features, Waveform } from '../../core/types';
+import { diamond, fit, font, write, type Brush } from '../../video/brush';
 import { PAGE, pictureX } from './picture-layout';
 import { PALETTE, tint } from '../palette';
 
@@ -32,9 +33,7 @@ const COLOURS = {
   left: '#6fa8ff',
   right: '#ff8f6b',
 };
-const FAMILY = 'Inter, system-ui, -apple-system, "Segoe UI", Roboto, sans-serif';
 
-type Brush = CanvasRenderingContext2D;
 type Box = { top: number; height: number };
 
 /** Draws onto a canvas of its own. */
@@ -56,47 +55,20 @@ export function drawPicture(content: PictureContent): HTMLCanvasElement {
   return canvas;
 }
 
-function write(brush: Brush, text: string, x: number, y: number, size: number, colour: string, weight = 400): number {
-  brush.font = `${weight} ${size}px ${FAMILY}`;
-  brush.fillStyle = colour;
-  brush.fillText(text, x, y);
-  return brush.measureText(text).width;
-}
-
-/** As much of a text as fits. */
-function fit(brush: Brush, text: string, font: string, width: number): string {
-  brush.font = font;
-  if (brush.measureText(text).width <= width) return text;
-  let end = text.length;
-  while (end > 1 && brush.measureText(`${text.slice(0, end)}…`).width > width) end -= 1;
-  return `${text.slice(0, end).trimEnd()}…`;
-}
-
 function drawTitle(brush: Brush, { title, range, tempo, strips }: PictureContent): void {
   brush.textBaseline = 'alphabetic';
   brush.textAlign = 'left';
-  const shown = fit(brush, title, `650 48px ${FAMILY}`, 1780);
-  write(brush, shown, PAGE.margin, 84, 48, COLOURS.text, 650);
+  const shown = fit(brush, title, 1780, font(48, 650));
+  write(brush, shown, PAGE.margin, 84, font(48, 650), COLOURS.text);
   const speed = tempo ? `, ${Math.round(tempo)} beats a minute` : '';
   const about = `${clockTime(range.start)} to ${clockTime(range.end)}${speed}. The same music and key poses, danced from two starting clips: ${strips
     .map((strip) => strip.name)
     .join(' and ')}.`;
-  write(brush, fit(brush, about, `400 26px ${FAMILY}`, 2200), PAGE.margin, 130, 26, COLOURS.muted);
+  write(brush, fit(brush, about, 2200, font(26)), PAGE.margin, 130, font(26), COLOURS.muted);
   brush.textAlign = 'right';
-  write(brush, 'Posebeat', PAGE.right, 80, 30, COLOURS.text, 650);
+  const mark = write(brush, 'Posebeat', PAGE.right, 80, font(30, 650), COLOURS.text);
   brush.textAlign = 'left';
-  brush.font = `650 30px ${FAMILY}`;
-  diamond(brush, PAGE.right - brush.measureText('Posebeat').width - 28, 69, 12);
-}
-
-function diamond(brush: Brush, x: number, y: number, half: number): void {
-  brush.fillStyle = COLOURS.key;
-  brush.beginPath();
-  brush.moveTo(x, y - half);
-  brush.lineTo(x + half, y);
-  brush.lineTo(x, y + half);
-  brush.lineTo(x - half, y);
-  brush.fill();
+  diamond(brush, PAGE.right - mark - 28, 69, 12, COLOURS.key);
 }
 
 function panel(brush: Brush, { top, height }: Box): void {
@@ -165,8 +137,9 @@ function label(brush: Brush, { top, height }: Box, name: string, note: string, c
   brush.fillStyle = colour;
   brush.fillRect(PAGE.margin, top + 16, 5, height - 32);
   const room = PAGE.left - x - 48;
-  write(brush, fit(brush, name, `620 28px ${FAMILY}`, room), x, top + height / 2 - 4, 28, COLOURS.text, 620);
-  write(brush, fit(brush, note, `400 21px ${FAMILY}`, room), x, top + height / 2 + 30, 21, COLOURS.muted);
+  const face = font(28, 620);
+  write(brush, fit(brush, name, room, face), x, top + height / 2 - 4, face, COLOURS.text);
+  write(brush, fit(brush, note, room, font(21)), x, top + height / 2 + 30, font(21), COLOURS.muted);
 }
 
 function drawStrip(brush: Brush, { range }: PictureContent, strip: Strip, box: Box): void {
@@ -211,10 +184,10 @@ function drawAxis(brush: Brush, { range }: PictureContent): void {
     const x = pictureX(range, second);
     brush.fillStyle = COLOURS.muted;
     brush.fillRect(x - 1, top, 2, 10);
-    write(brush, String(second), x, top + 16, 24, COLOURS.muted);
+    write(brush, String(second), x, top + 16, font(24), COLOURS.muted);
   }
   brush.textAlign = 'left';
-  write(brush, 'time, s', PAGE.margin + 24, top + 16, 24, COLOURS.muted);
+  write(brush, 'time, s', PAGE.margin + 24, top + 16, font(24), COLOURS.muted);
 }
 
 function drawLegend(brush: Brush, { exact }: PictureContent): void {
@@ -224,7 +197,7 @@ function drawLegend(brush: Brush, { exact }: PictureContent): void {
   let x: number = PAGE.left;
   const entry = (draw: (at: number) => number, text: string) => {
     x += draw(x) + 14;
-    x += write(brush, text, x, y + 1, 24, COLOURS.muted) + 52;
+    x += write(brush, text, x, y + 1, font(24), COLOURS.muted) + 52;
   };
   entry(
     (at) => {
