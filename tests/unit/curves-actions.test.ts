@@ -241,6 +241,47 @@ describe('a change of a curve', () => {
     expect(anchors()).not.toContain(keys()[0].id);
   });
 
+  it.each(['pasted', 'duplicated', 'copied by a drag'])('never passes to a key pose that is %s', async (way) => {
+    const { store } = await withCurves();
+    const keys = () => store.state.document.value.keyPoses;
+    const { anchors } = store.state.dance.value!.curves!;
+    // The last one is gone, but the dance on stage still runs through it.
+    store.deleteKeys(new Set([keys()[2].id]));
+    store.selectKey(keys()[0].id);
+    if (way === 'pasted') {
+      store.copyKeys();
+      store.seek(4);
+      store.pasteKeys(true);
+    } else if (way === 'duplicated') store.duplicateKeys();
+    else {
+      store.beginMove();
+      store.previewMove(2, keys()[0].id, true, true);
+      store.commitMove();
+    }
+    expect(keys()).toHaveLength(3);
+    const copy = keys().find(({ id }) => store.state.selection.value.has(id))!;
+    expect(anchors).not.toContain(copy.id);
+  });
+
+  it('goes with a key pose that another is dragged onto, but stays while the drag only passes over it', async () => {
+    const { store } = await withCurves();
+    const keys = () => store.state.document.value.keyPoses;
+    store.changeCurve(first(store), elbow, { tension: 1 });
+    const last = keys()[2].id;
+    const [gone] = [keys()[1].id];
+    store.selectKey(last);
+    store.beginMove();
+    store.previewMove(-0.5, last, true);
+    expect(keys().map(({ id }) => id)).not.toContain(gone);
+    store.previewMove(0.5, last, true);
+    expect(store.state.document.value.curveEdits).toHaveLength(1);
+    store.previewMove(-0.5, last, true);
+    store.commitMove();
+    expect(store.state.document.value).not.toHaveProperty('curveEdits');
+    store.undo();
+    expect(store.state.document.value.curveEdits).toHaveLength(1);
+  });
+
   it('goes with suggestions that give way to others', async () => {
     const { store, services } = await withCurves();
     services.suggester = {

@@ -13,6 +13,8 @@ export interface KeySpace {
   /** Seconds. */
   duration: number;
   grid: BeatGrid | null;
+  /** Ids besides those of the key poses that a copy must not get. */
+  takenIds?: readonly string[];
 }
 
 type Keys = readonly KeyPose[];
@@ -139,7 +141,7 @@ export function nudgeKeys(keys: Keys, ids: Ids, direction: -1 | 1, unit: 'beat' 
 export function copyKeysBy(keys: Keys, ids: Ids, by: { seconds: number } | { beats: number }, space: KeySpace): Added {
   const chosen = keys.filter((key) => ids.has(key.id));
   const places = 'beats' in by ? beatPlaces(chosen, by.beats, space) : shifted(chosen, by.seconds, space.duration);
-  return addCopies(keys, placedAt(chosen, places), space.duration);
+  return addCopies(keys, placedAt(chosen, places), space);
 }
 
 /** Copies key poses by as many whole bars as they span, at least one. What goes past the end of the song is left out. */
@@ -177,7 +179,7 @@ export function pasteKeys(keys: Keys, copied: Keys, at: number, space: KeySpace)
   const placed = copied.map((key) => ({ ...key, time: count.time(to + count.of(key.time) - from) }));
   placed[0].time = at;
   const fitting = placed.filter((key) => key.time <= lastKeyTime(space.duration) + 1e-9);
-  return { ...addCopies(keys, fitting, space.duration), left: placed.length - fitting.length };
+  return { ...addCopies(keys, fitting, space), left: placed.length - fitting.length };
 }
 
 /**
@@ -280,9 +282,9 @@ function beatPlaces(moved: Keys, beats: number, { grid, duration }: KeySpace): n
   return moved.map((key) => (shift === 0 ? key.time : count.time(count.of(key.time) + shift)));
 }
 
-function addCopies(keys: Keys, copies: Keys, duration: number): Added {
+function addCopies(keys: Keys, copies: Keys, { duration, takenIds = [] }: KeySpace): Added {
   if (copies.length === 0) return { keys, added: [], left: 0 };
-  const number = Number(nextKeyId(keys).slice(1));
+  const number = Number(nextKeyId([...keys, ...takenIds.map((id) => ({ id }))]).slice(1));
   const placed = copies.map((key, i) => {
     const copy: KeyPose = { ...asOwn(key), id: `k${number + i}` };
     delete copy.locked;

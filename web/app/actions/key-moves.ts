@@ -1,6 +1,6 @@
 /** Moving and copying key poses along the song. */
 import { beatCount } from '../../core/beat-count';
-import { MAX_KEY_POSES } from '../../core/document';
+import { MAX_KEY_POSES, type ProjectDocument } from '../../core/document';
 import {
   copyKeysBy,
   distributeKeys,
@@ -15,6 +15,7 @@ import {
 import { snapTime } from '../../core/snap';
 import type { KeyPose } from '../../core/types';
 import type { Context } from '../context';
+import { idsOnStage, withOwnCurves } from './curves';
 
 /** What the actions on key poses share. */
 export interface KeyTools {
@@ -29,10 +30,10 @@ export interface KeyTools {
 export function keyMoves(context: Context, tools: KeyTools) {
   const { state, history, services } = context;
   const { keysNow, setKeys, chosenKeys, allowed } = tools;
-  let drag: { keys: KeyPose[]; ids: ReadonlySet<string>; copies: string[] } | null = null;
+  let drag: { from: ProjectDocument; ids: ReadonlySet<string>; copies: string[] } | null = null;
   let clipboard: readonly KeyPose[] = [];
 
-  const space = () => ({ duration: state.duration.value, grid: state.grid.value });
+  const space = () => ({ duration: state.duration.value, grid: state.grid.value, takenIds: idsOnStage(state) });
 
   /** Makes copies one step and selects them. */
   const keepCopies = (label: string, { keys, added, left }: Added) => {
@@ -54,7 +55,7 @@ export function keyMoves(context: Context, tools: KeyTools) {
   return {
     /** A drag of the selected key poses begins. */
     beginMove(): void {
-      drag = { keys: state.document.value.keyPoses, ids: state.selection.value, copies: [] };
+      drag = { from: state.document.value, ids: state.selection.value, copies: [] };
       history.capture();
     },
 
@@ -64,7 +65,8 @@ export function keyMoves(context: Context, tools: KeyTools) {
      */
     previewMove(seconds: number, anchor: string, exact: boolean, copy = false): number | null {
       if (!drag || !history.capturing) return null;
-      const { keys, ids } = drag;
+      const { from, ids } = drag;
+      const keys = from.keyPoses;
       const lead = keys.find((key) => key.id === anchor);
       if (!lead) return null;
       const { grid, duration } = space();
@@ -82,7 +84,10 @@ export function keyMoves(context: Context, tools: KeyTools) {
       } else if (target !== lead.time) {
         next = free ? shiftKeys(keys, ids, target - lead.time, duration) : shiftKeysByBeats(keys, ids, beats, space());
       }
-      history.preview({ ...history.present, keyPoses: next as KeyPose[] });
+      // Changed curves of a key pose that the drag only passed over come back with it.
+      const { curveEdits } = from;
+      const document = { ...history.present, ...(curveEdits && { curveEdits }), keyPoses: next as KeyPose[] };
+      history.preview(withOwnCurves(document));
       context.sync();
       const copied = drag.copies[keys.filter((key) => ids.has(key.id)).indexOf(lead)];
       return next.find((key) => key.id === (copied ?? anchor))?.time ?? null;
@@ -91,9 +96,9 @@ export function keyMoves(context: Context, tools: KeyTools) {
     /** The drag ends where it is: one step of undo. */
     commitMove(): void {
       if (!drag) return;
-      const { keys, ids, copies } = drag;
+      const { from, ids, copies } = drag;
       drag = null;
-      if (state.document.value.keyPoses === keys) {
+      if (state.document.value.keyPoses === from.keyPoses) {
         history.discard();
         allowed(ids);
       } else history.commit(copies.length > 0 ? 'Copy key pose' : 'Move key pose');

@@ -6,6 +6,7 @@ import { posesAtTimes, seedFromClip } from '../../core/import-motion';
 import { gridTimes, nearestIndex } from '../../core/snap';
 import type { KeyPose } from '../../core/types';
 import { messageOf, type Context } from '../context';
+import { idsOnStage } from './curves';
 
 /** Which beats get a key pose. */
 export type ImportDensity = 'beat' | 'two' | 'bar';
@@ -80,9 +81,10 @@ export function motionImportActions(context: Context) {
         const still = keyPoses.filter((key) => key.locked || !inside(key));
         const taken = new Set(still.map(({ time }) => frameOf(time)));
         const placed: KeyPose[] = [];
+        const onStage = idsOnStage(state).map((id) => ({ id }));
         for (const { time, rotations } of poses) {
           if (taken.has(frameOf(time))) continue;
-          placed.push({ id: nextKeyId([...keyPoses, ...placed]), time, rotations });
+          placed.push({ id: nextKeyId([...keyPoses, ...placed, ...onStage]), time, rotations });
         }
         if (still.length + placed.length > MAX_KEY_POSES) throw new Error('That would be too many key poses.');
         const keys = settleKeys(still, placed, state.duration.value);
