@@ -1,6 +1,7 @@
 /** Dragging a pose from the library onto the timeline, by mouse or touch. */
 import type { Store } from '../app/store';
 import type { LibraryPose } from '../core/types';
+import { followPointer } from './pointer';
 import { LANES } from './timeline/geometry';
 import { dropTime, pointOfTime, timeAtPoint } from './timeline/surface';
 
@@ -33,7 +34,7 @@ export function startPoseDrag(
   if (event.button !== 0) return;
   const tile = event.currentTarget as HTMLElement;
   delete tile.dataset.dragged;
-  const { pointerId, clientX: startX, clientY: startY } = event;
+  const { clientX: startX, clientY: startY } = event;
   const touch = event.pointerType === 'touch';
   let ghost: HTMLElement | null = null;
   let timer: ReturnType<typeof setTimeout> | undefined;
@@ -52,7 +53,6 @@ export function startPoseDrag(
     ghost.classList.toggle('over', dropTime.value !== null);
   };
   const move = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     const distance = Math.hypot(next.clientX - startX, next.clientY - startY);
     if (!ghost) {
       // On a busy page a move comes before the timer that was due first: the finger's own clock decides.
@@ -64,7 +64,6 @@ export function startPoseDrag(
     place(next.clientX, next.clientY, next.altKey);
   };
   const up = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     // Alt counts as it is when the pose is let go.
     if (next.type === 'pointerup') place(next.clientX, next.clientY, next.altKey);
     const time = dropTime.value;
@@ -84,16 +83,10 @@ export function startPoseDrag(
     dropTime.value = null;
     // The click that follows a drag must not add the pose again.
     setTimeout(() => delete tile.dataset.dragged, 0);
-    window.removeEventListener('pointermove', move);
-    window.removeEventListener('pointerup', up);
-    window.removeEventListener('pointercancel', up);
-    window.removeEventListener('keydown', escape, true);
+    letGo();
   };
   if (touch) timer = setTimeout(() => lift(startX, startY), LONG_PRESS);
-  window.addEventListener('pointermove', move);
-  window.addEventListener('pointerup', up);
-  window.addEventListener('pointercancel', up);
-  window.addEventListener('keydown', escape, true);
+  const letGo = followPointer(event, { move, end: up, key: escape });
 }
 
 function makeGhost(tile: HTMLElement): HTMLElement {

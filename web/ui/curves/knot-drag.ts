@@ -2,6 +2,7 @@
 import type { Store } from '../../app/store';
 import { findEdit, NO_EDITS } from '../../core/curves-edit';
 import { knotsMovedTo } from '../../core/curves-view';
+import { followPointer } from '../pointer';
 import { heldScale, perPixel, scaleOf, type ShownCurves } from './curve-space';
 
 const DRAG_THRESHOLD = { mouse: 2, touch: 6 };
@@ -27,7 +28,7 @@ export function knotsAt(store: Store, curves: ShownCurves, { interval, n, axis }
 export function beginKnotDrag(event: PointerEvent, store: Store, curves: ShownCurves, place: KnotPlace): void {
   if (event.button !== 0) return;
   event.stopPropagation();
-  const { pointerId, clientY: startY } = event;
+  const { clientY: startY } = event;
   const { picture, track } = curves;
   const { interval, n, axis } = place;
   const knot = interval * 3 + 1 + n;
@@ -40,7 +41,6 @@ export function beginKnotDrag(event: PointerEvent, store: Store, curves: ShownCu
   store.seek(picture.knots[knot]);
 
   const move = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     if (!dragging) {
       if (Math.abs(next.clientY - startY) < threshold) return;
       dragging = true;
@@ -53,7 +53,6 @@ export function beginKnotDrag(event: PointerEvent, store: Store, curves: ShownCu
     store.previewCurve(interval, track, { knots: knotsAt(store, curves, place, value) });
   };
   const end = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     stop();
     if (dragging && next.type === 'pointerup') store.commitCurveDrag('Move curve knot');
     else if (dragging) store.discardCurveDrag();
@@ -68,20 +67,9 @@ export function beginKnotDrag(event: PointerEvent, store: Store, curves: ShownCu
     next.stopPropagation();
     cancel();
   };
-  const secondFinger = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) cancel();
-  };
   const stop = () => {
     heldScale.value = null;
-    window.removeEventListener('pointermove', move);
-    window.removeEventListener('pointerup', end);
-    window.removeEventListener('pointercancel', end);
-    window.removeEventListener('pointerdown', secondFinger, true);
-    window.removeEventListener('keydown', escape, true);
+    letGo();
   };
-  window.addEventListener('pointermove', move);
-  window.addEventListener('pointerup', end);
-  window.addEventListener('pointercancel', end);
-  window.addEventListener('pointerdown', secondFinger, true);
-  window.addEventListener('keydown', escape, true);
+  const letGo = followPointer(event, { move, end, key: escape, secondFinger: cancel });
 }

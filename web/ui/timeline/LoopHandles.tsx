@@ -1,4 +1,5 @@
 import { clockTime, stepBeat } from '../../app/snapping';
+import { capturePointer } from '../pointer';
 import { useStore } from '../store-context';
 import { timeToX } from './geometry';
 import { timeAtX } from './surface';
@@ -18,18 +19,12 @@ export function LoopHandles() {
   const onPointerDown = (end: 'start' | 'end') => (event: PointerEvent) => {
     if (event.button !== 0) return;
     event.stopPropagation();
-    const handle = event.currentTarget as HTMLElement;
-    handle.setPointerCapture(event.pointerId);
-    const drag = (next: PointerEvent) => {
+    capturePointer(event, (next) => {
       const time = timeAtX(store, next.clientX);
       const target = store.snapTime(time, next.altKey);
       const now = store.state.loop.value;
       if (now && (end === 'start' ? target < now.end : target > now.start)) move(end, target);
-    };
-    handle.addEventListener('pointermove', drag);
-    const stop = () => handle.removeEventListener('pointermove', drag);
-    handle.addEventListener('pointerup', stop, { once: true });
-    handle.addEventListener('pointercancel', stop, { once: true });
+    });
   };
 
   return (

@@ -2,6 +2,7 @@ import { useComputed, useSignalEffect } from '@preact/signals';
 import { useRef } from 'preact/hooks';
 import { barAndBeat, clockTime, stepBeat } from '../../app/snapping';
 import spec from '../../core/spec.json';
+import { capturePointer } from '../pointer';
 import { useStore } from '../store-context';
 import { timeToX } from './geometry';
 import { timeAtX } from './surface';
@@ -54,13 +55,7 @@ export function Playhead() {
   const onPointerDown = (event: PointerEvent) => {
     if (event.button !== 0) return;
     event.stopPropagation();
-    const grip = event.currentTarget as HTMLElement;
-    grip.setPointerCapture(event.pointerId);
-    const move = (next: PointerEvent) => store.seek(timeAtX(store, next.clientX));
-    grip.addEventListener('pointermove', move);
-    const end = () => grip.removeEventListener('pointermove', move);
-    grip.addEventListener('pointerup', end, { once: true });
-    grip.addEventListener('pointercancel', end, { once: true });
+    capturePointer(event, (next) => store.seek(timeAtX(store, next.clientX)));
   };
 
   return (

@@ -1,5 +1,6 @@
 import { useSignalEffect } from '@preact/signals';
 import { useRef } from 'preact/hooks';
+import { capturePointer } from '../pointer';
 import { useStore } from '../store-context';
 
 /** The thumb is never shorter, CSS pixels. */
@@ -33,9 +34,7 @@ export function ScrollBar() {
 
   const onPointerDown = (event: PointerEvent) => {
     if (event.button !== 0) return;
-    const bar = event.currentTarget as HTMLElement;
-    bar.setPointerCapture(event.pointerId);
-    const { left, width } = bar.getBoundingClientRect();
+    const { left, width } = (event.currentTarget as HTMLElement).getBoundingClientRect();
     const { start, span, whole } = shown();
     const under = ((event.clientX - left) / width) * whole;
     // On the thumb it stays under the finger; beside it, it comes there.
@@ -43,11 +42,7 @@ export function ScrollBar() {
     const go = (clientX: number) =>
       store.setView(((clientX - left) / width) * whole - grip, view.value.pixelsPerSecond);
     go(event.clientX);
-    const move = (next: PointerEvent) => go(next.clientX);
-    bar.addEventListener('pointermove', move);
-    const stop = () => bar.removeEventListener('pointermove', move);
-    bar.addEventListener('pointerup', stop, { once: true });
-    bar.addEventListener('pointercancel', stop, { once: true });
+    capturePointer(event, (next) => go(next.clientX));
   };
 
   return (

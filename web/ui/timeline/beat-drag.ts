@@ -1,5 +1,6 @@
 /** Dragging one beat along the timeline. */
 import type { Store } from '../../app/store';
+import { followPointer } from '../pointer';
 
 const DRAG_THRESHOLD = { mouse: 3, touch: 8 };
 
@@ -10,13 +11,12 @@ export function beginBeatDrag(event: PointerEvent, index: number, store: Store):
   const { state } = store;
   const origin = state.grid.value?.beats[index];
   if (origin === undefined) return;
-  const { pointerId, clientX: startX } = event;
+  const { clientX: startX } = event;
   const startView = state.view.value.start;
   const threshold = event.pointerType === 'touch' ? DRAG_THRESHOLD.touch : DRAG_THRESHOLD.mouse;
   let dragging = false;
 
   const move = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     if (!dragging) {
       if (Math.abs(next.clientX - startX) < threshold) return;
       if (!store.beginBeatDrag(index)) {
@@ -29,7 +29,6 @@ export function beginBeatDrag(event: PointerEvent, index: number, store: Store):
     store.previewBeatDrag(origin + (next.clientX - startX) / pixelsPerSecond + start - startView, next.shiftKey);
   };
   const end = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     stop();
     if (!dragging) {
       if (next.type === 'pointerup') store.seek(origin);
@@ -42,14 +41,5 @@ export function beginBeatDrag(event: PointerEvent, index: number, store: Store):
     stop();
     store.discardBeatDrag();
   };
-  const stop = () => {
-    window.removeEventListener('pointermove', move);
-    window.removeEventListener('pointerup', end);
-    window.removeEventListener('pointercancel', end);
-    window.removeEventListener('keydown', escape, true);
-  };
-  window.addEventListener('pointermove', move);
-  window.addEventListener('pointerup', end);
-  window.addEventListener('pointercancel', end);
-  window.addEventListener('keydown', escape, true);
+  const stop = followPointer(event, { move, end, key: escape });
 }

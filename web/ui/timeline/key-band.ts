@@ -1,5 +1,6 @@
 /** Selecting key poses by dragging over them in their lane. */
 import type { Store } from '../../app/store';
+import { followPointer } from '../pointer';
 import { scrollAtEdge } from './key-drag';
 import { band } from './lane-signals';
 import { timeAtX } from './surface';
@@ -8,7 +9,7 @@ const THRESHOLD = 4;
 
 /** Press between key poses: select none; move: select what is dragged over, with Shift, Ctrl or Cmd besides; Escape: as before. */
 export function beginBand(event: PointerEvent, store: Store): void {
-  const { pointerId, clientX: startX } = event;
+  const { clientX: startX } = event;
   const start = timeAtX(store, startX);
   const before = store.state.selection.value;
   const beside = event.shiftKey || event.ctrlKey || event.metaKey ? before : new Set<string>();
@@ -16,16 +17,12 @@ export function beginBand(event: PointerEvent, store: Store): void {
   if (beside.size === 0) store.selectKey(null);
 
   const move = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     if (!moved && Math.abs(next.clientX - startX) < THRESHOLD) return;
     moved = true;
     scrollAtEdge(store, next.clientX);
     const now = timeAtX(store, next.clientX);
     band.value = { start: Math.min(start, now), end: Math.max(start, now) };
     store.selectBetween(start, now, beside);
-  };
-  const up = (next: PointerEvent) => {
-    if (next.pointerId === pointerId) stop();
   };
   const escape = (next: KeyboardEvent) => {
     if (next.key !== 'Escape') return;
@@ -36,13 +33,7 @@ export function beginBand(event: PointerEvent, store: Store): void {
   };
   const stop = () => {
     band.value = null;
-    window.removeEventListener('pointermove', move);
-    window.removeEventListener('pointerup', up);
-    window.removeEventListener('pointercancel', up);
-    window.removeEventListener('keydown', escape, true);
+    letGo();
   };
-  window.addEventListener('pointermove', move);
-  window.addEventListener('pointerup', up);
-  window.addEventListener('pointercancel', up);
-  window.addEventListener('keydown', escape, true);
+  const letGo = followPointer(event, { move, end: stop, key: escape });
 }

@@ -1,5 +1,6 @@
 /** Dragging key poses along the timeline. */
 import type { Store } from '../../app/store';
+import { followPointer } from '../pointer';
 import { dragHint } from './lane-signals';
 import { surface } from './surface';
 
@@ -27,7 +28,7 @@ export function scrollAtEdge(store: Store, clientX: number): void {
 export function beginKeyDrag(event: PointerEvent, id: string, store: Store): void {
   if (event.button !== 0) return;
   event.stopPropagation();
-  const { pointerId, clientX: startX, clientY: startY } = event;
+  const { clientX: startX, clientY: startY } = event;
   const touch = event.pointerType === 'touch';
   const toggle = event.ctrlKey || event.metaKey;
   const already = store.state.selection.value.has(id);
@@ -48,7 +49,6 @@ export function beginKeyDrag(event: PointerEvent, id: string, store: Store): voi
     dragHint.value = time === null ? null : { time, copy };
   };
   const move = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     at = next.clientX;
     if (!dragging) {
       const far = touch ? Math.hypot(at - startX, next.clientY - startY) : Math.abs(at - startX);
@@ -62,7 +62,6 @@ export function beginKeyDrag(event: PointerEvent, id: string, store: Store): voi
     preview(next);
   };
   const end = (next: PointerEvent) => {
-    if (next.pointerId !== pointerId) return;
     stop();
     if (dragging && next.type === 'pointerup') store.commitMove();
     else if (dragging) store.discardMove();
@@ -85,18 +84,10 @@ export function beginKeyDrag(event: PointerEvent, id: string, store: Store): voi
       preview(next);
     }
   };
-  const secondFinger = (next: PointerEvent) => {
-    if (touch && next.pointerId !== pointerId) cancel();
-  };
   const stop = () => {
     clearTimeout(timer);
     dragHint.value = null;
-    window.removeEventListener('pointermove', move);
-    window.removeEventListener('pointerup', end);
-    window.removeEventListener('pointercancel', end);
-    window.removeEventListener('pointerdown', secondFinger, true);
-    window.removeEventListener('keydown', key, true);
-    window.removeEventListener('keyup', key, true);
+    letGo();
     // The focus that a tap brings comes after it.
     setTimeout(() => (pressedKey.current = pressedKey.current === id ? null : pressedKey.current), 0);
   };
@@ -107,11 +98,5 @@ export function beginKeyDrag(event: PointerEvent, id: string, store: Store): voi
         navigator.vibrate?.(10);
       }, LONG_PRESS)
     : undefined;
-  // On the window, not the button: the list may reorder under the pointer, which would end a capture.
-  window.addEventListener('pointermove', move);
-  window.addEventListener('pointerup', end);
-  window.addEventListener('pointercancel', end);
-  window.addEventListener('pointerdown', secondFinger, true);
-  window.addEventListener('keydown', key, true);
-  window.addEventListener('keyup', key, true);
+  const letGo = followPointer(event, { move, end, key, keyUp: key, ...(touch ? { secondFinger: cancel } : {}) });
 }
