@@ -2,6 +2,7 @@ import { useComputed, useSignal } from '@preact/signals';
 import type { BlendSource } from '../../app/actions/pose-blend';
 import { useStore } from '../store-context';
 import { Fold } from './Fold';
+import { PercentSlider } from './PercentSlider';
 
 /** Blends the pose with another one: live, and one step however far the slider goes. */
 export function BlendSection() {
@@ -52,23 +53,14 @@ export function BlendSection() {
           ))}
         </select>
       </label>
-      <div class="slider-row tone-key">
-        <input
-          type="range"
-          aria-label="How much of the other pose"
-          aria-valuetext={`${percent} percent`}
-          min={0}
-          max={100}
-          step={1}
-          disabled={source.value === ''}
-          value={percent}
-          style={{ '--fill': `${percent}%` }}
-          onInput={(event) => {
-            if (source.value) store.blendWith(source.value, Number(event.currentTarget.value) / 100);
-          }}
-        />
-        <output>{percent}%</output>
-      </div>
+      <PercentSlider
+        label="How much of the other pose"
+        percent={percent}
+        disabled={source.value === ''}
+        onInput={(now) => {
+          if (source.value) store.blendWith(source.value, now / 100);
+        }}
+      />
       {blend && (
         <div class="tool-row">
           <button type="button" class="quiet" onClick={() => store.cancelBlend()}>

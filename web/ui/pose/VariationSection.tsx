@@ -2,6 +2,7 @@ import { Icon } from '../Icon';
 import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 import { Fold } from './Fold';
+import { PercentSlider } from './PercentSlider';
 
 /** Random variations of the pose. */
 export function VariationSection() {
@@ -9,20 +10,13 @@ export function VariationSection() {
   const percent = Math.round(store.state.variationAmount.value * 100);
   return (
     <Fold title="Random variation" summary={`${percent}%`}>
-      <div class="slider-row tone-key">
-        <input
-          type="range"
-          aria-label="How wild"
-          aria-valuetext={`${percent} percent`}
-          min={5}
-          max={100}
-          step={5}
-          value={percent}
-          style={{ '--fill': `${((percent - 5) / 95) * 100}%` }}
-          onInput={(event) => store.setVariationAmount(Number(event.currentTarget.value) / 100)}
-        />
-        <output>{percent}%</output>
-      </div>
+      <PercentSlider
+        label="How wild"
+        percent={percent}
+        min={5}
+        step={5}
+        onInput={(now) => store.setVariationAmount(now / 100)}
+      />
       <button type="button" class="secondary" title={tip('pose-vary')} onClick={() => store.varyPose()}>
         <Icon name="dices" size={18} />
         Another variation
