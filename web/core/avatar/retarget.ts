@@ -7,14 +7,14 @@ import { HEEL_OFFSET, RADIUS } from '../contact-body';
 import { smoothstep } from '../interpolate';
 import { REST, REST_HEIGHT } from '../rest';
 import { conjugate, multiply, rotateVector, slerp } from '../rotation';
-import { forwardKinematics, JOINT_COUNT, jointIndex, JOINTS, OFFSETS, PARENTS } from '../skeleton';
+import { forwardKinematics, JOINT_COUNT, jointIndex, JOINTS, PARENTS } from '../skeleton';
 import { spec } from '../spec';
 import type { FramePose } from '../types';
 import { checkBones, type BoneMap } from './bones';
 import { driveNodes, type DrivenNode } from './driven';
-import { LONGEST, reachWithLeg, type PlacedLeg } from './leg';
+import { LONGEST, reachWithLeg } from './leg';
+import { makeLegs, placeSole, type FootedLeg } from './footed-legs';
 import type { AvatarRig } from './rig';
-import { findSoles, type Sole } from './soles';
 import { pointOf, quaternionOf } from './vector';
 
 /** What an avatar's nodes are set to. */
@@ -44,24 +44,6 @@ const FLESH = [...RADIUS]
     return { joint, radius, node };
   });
 
-/** A leg with all that its foot needs. */
-interface Leg extends PlacedLeg {
-  sole: Sole;
-  /** Places of its nodes in the list. */
-  at: { hip: number; knee: number; ankle: number; toe: number };
-  /** Ours. */
-  foot: { ankle: number; toe: number };
-  /** From the ankle: the lowest point of the sole (its height) and the ball. */
-  low: number;
-  ball: Float64Array;
-  target: Float64Array;
-  across: Float64Array;
-  /** How much further aside the ball stands at rest than ours would, along the foot's own left, scene units. */
-  aside: number;
-  /** 1 = the foot goes to its place, 0 = it keeps its angles. */
-  hold: number;
-}
-
 /** Carries our poses over to an avatar. The same pose always gives the same frame, whatever came before. */
 export class AvatarRetargeter {
   /** The file's nodes that are turned, each after its parent; the first is the hips, the only one that is moved too. */
@@ -76,7 +58,7 @@ export class AvatarRetargeter {
   readonly #driven: readonly DrivenNode[];
   /** Of our joints: the place in the list of the node that is turned as it; -1 = none. */
   readonly #placeOf: readonly number[];
-  readonly #legs: readonly Leg[];
+  readonly #legs: readonly FootedLeg[];
   /** World rotations and places of the list's nodes. */
   readonly #turns: Float64Array[];
   readonly #places: Float64Array[];
@@ -109,7 +91,7 @@ export class AvatarRetargeter {
       place: Float64Array.from(parent < 0 ? [0, 0, 0] : pointOf(rig.world.positions, parent)),
       size: Float64Array.from(parent < 0 ? [1, 1, 1] : pointOf(rig.world.sizes, parent), (size) => size || 1),
     };
-    this.#legs = this.#makeLegs(rig);
+    this.#legs = makeLegs(rig, { driven, placeOf: this.#placeOf, places: this.#places, turns: this.#turns });
     // Standing as we stand at rest tells how much longer or shorter the avatar's legs are.
     const rest: FramePose = {
       root: [0, REST_HEIGHT, 0],
@@ -119,7 +101,7 @@ export class AvatarRetargeter {
     let lowest = Infinity;
     let ahead = 0;
     for (const leg of this.#legs) {
-      this.#placeSole(leg);
+      placeSole(leg, this.#places, this.#turns, this.#q);
       lowest = Math.min(lowest, this.#places[leg.at.ankle][1] + leg.low);
       ahead += (this.#places[leg.at.ankle][2] + leg.ball[2]) / 2;
     }
@@ -170,38 +152,6 @@ export class AvatarRetargeter {
     return out;
   }
 
-  #makeLegs(rig: AvatarRig): Leg[] {
-    const at = (['left', 'right'] as const).map((side) => {
-      const [hip, knee, ankle, toe] = ['hip', 'knee', 'ankle', 'foot'].map(
-        (part) => this.#placeOf[jointIndex(`${side}_${part}`)],
-      );
-      return { hip, knee, ankle, toe };
-    });
-    const long = (place: number) => Math.hypot(...this.#driven[place].offset);
-    const ourLong = (joint: number) => Math.hypot(...OFFSETS[joint]);
-    const rough =
-      (long(at[0].knee) + long(at[0].ankle)) / (ourLong(jointIndex('left_knee')) + ourLong(jointIndex('left_ankle')));
-    const soles = findSoles(rig, this.#driven, at, rough);
-    return at.map((places, i) => ({
-      sole: soles[i],
-      at: places,
-      foot: i === 0 ? feet.left : feet.right,
-      low: 0,
-      ball: new Float64Array(3),
-      target: new Float64Array(3),
-      across: new Float64Array(3),
-      aside: 0,
-      hold: 0,
-      hip: this.#places[places.hip],
-      knee: this.#places[places.knee],
-      ankle: this.#places[places.ankle],
-      hipTurn: this.#turns[places.hip],
-      kneeTurn: this.#turns[places.knee],
-      thigh: long(places.knee),
-      shin: long(places.ankle),
-    }));
-  }
-
   /** World rotations, and places from the hips. */
   #turnNodes({ quaternions, root }: FramePose): void {
     forwardKinematics(quaternions, root, this.#joints, this.#ours);
@@ -217,20 +167,6 @@ export class AvatarRetargeter {
       rotateVector(this.#turns[parent], offset, place);
       for (let k = 0; k < 3; k++) place[k] += this.#places[parent][k];
     }
-  }
-
-  /** Lowest point and ball of a foot, from its ankle. */
-  #placeSole(leg: Leg): void {
-    const { sole, at } = leg;
-    const ankle = this.#places[at.ankle];
-    let low = lowest(sole.ankle, this.#turns[at.ankle], this.#q);
-    if (at.toe < 0) {
-      rotateVector(this.#turns[at.ankle], sole.ball, leg.ball);
-    } else {
-      for (let k = 0; k < 3; k++) leg.ball[k] = this.#places[at.toe][k] - ankle[k];
-      low = Math.min(low, leg.ball[1] + lowest(sole.toe, this.#turns[at.toe], this.#q));
-    }
-    leg.low = low;
   }
 
   /** Where the body is to be, by where the feet are to be. */
@@ -282,9 +218,9 @@ export class AvatarRetargeter {
   }
 
   /** Where a foot is to be, and how firmly. */
-  #aimFoot(leg: Leg): void {
+  #aimFoot(leg: FootedLeg): void {
     const { scale } = this;
-    this.#placeSole(leg);
+    placeSole(leg, this.#places, this.#turns, this.#q);
     const clear = Math.max(0, this.#clearance(leg));
     leg.hold = 1 - smoothstep((clear - NEAR) / (FAR - NEAR));
     // Broad hips and straight feet keep their stance; as long as our foot does not turn, theirs stands still.
@@ -303,14 +239,14 @@ export class AvatarRetargeter {
   }
 
   /** How far the lowest point of our foot is above the floor, metres. */
-  #clearance({ foot }: Leg): number {
+  #clearance({ foot }: FootedLeg): number {
     for (let k = 0; k < 3; k++) this.#q[k] = HEEL_OFFSET[k];
     rotateVector(this.#ourTurns[foot.ankle], this.#q, this.#q);
     return Math.min(this.#joints[foot.toe * 3 + 1], this.#joints[foot.ankle * 3 + 1] + this.#q[1]) - toeHeight;
   }
 
   /** Puts a foot where it is to be. */
-  #bringFoot(leg: Leg): void {
+  #bringFoot(leg: FootedLeg): void {
     if (leg.hold <= 0) return;
     for (let k = 0; k < 3; k++) leg.target[k] = leg.ankle[k] + leg.hold * (leg.target[k] - leg.ankle[k]);
     leg.across[0] = 1;
@@ -325,14 +261,4 @@ export class AvatarRetargeter {
 /** The middle of two joints along an axis. */
 function middleOf(joints: Float32Array, a: number, b: number, axis: number): number {
   return (joints[a * 3 + axis] + joints[b * 3 + axis]) / 2;
-}
-
-/** Height of the lowest of some points when they are turned; 0 without points. */
-function lowest(points: Float64Array, turn: Float64Array, scratch: Float64Array): number {
-  let low = points.length > 0 ? Infinity : 0;
-  for (let i = 0; i < points.length; i += 3) {
-    for (let k = 0; k < 3; k++) scratch[k] = points[i + k];
-    low = Math.min(low, rotateVector(turn, scratch, scratch)[1]);
-  }
-  return low;
 }
