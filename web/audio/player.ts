@@ -1,7 +1,6 @@
 /** The clock of the house: what `time()` says is what is heard, and everything that moves asks it. */
-import { HeardClock } from './heard-clock';
-import { positionAt, type LoopRange, type Segment } from './segment';
-import { SongSource } from './song-source';
+import type { LoopRange, Segment } from './segment';
+import { SongCourse } from './song-course';
 import { SoundOutput, type ContextFactory } from './sound-output';
 
 export type { LoopRange } from './segment';
@@ -16,8 +15,6 @@ export interface Score {
   segment: Segment;
 }
 
-/** Sources start this much in the future, so that the start is exact to the sample. */
-const START_DELAY = 0.02;
 /** Slowest and fastest playback. */
 export const SPEED_RANGE = { min: 0.25, max: 1.5 } as const;
 /** The shortest loop, seconds. */
@@ -31,15 +28,11 @@ export const MIN_LOOP = 0.1;
  */
 export class Player {
   readonly #output: SoundOutput;
-  readonly #now: () => number;
-  readonly #heard = new HeardClock();
+  readonly #course: SongCourse;
   readonly #listeners = new Set<() => void>();
-  #source: SongSource | null = null;
-  #buffer: AudioBuffer | null = null;
   #duration = 0;
   #playing = false;
   #position = 0;
-  #segments: Segment[] = [];
   #speed = 1;
   #loop: LoopRange | null = null;
   #bounds: LoopRange | null = null;
@@ -50,7 +43,13 @@ export class Player {
    */
   constructor(createContext: ContextFactory = () => new AudioContext(), now: () => number = () => performance.now()) {
     this.#output = new SoundOutput(createContext, () => this.#onStateChange());
-    this.#now = now;
+    this.#course = new SongCourse(this.#output, now, () => ({
+      duration: this.#duration,
+      speed: this.#speed,
+      loop: this.#loop,
+      end: this.#last,
+      partly: this.#bounds !== null,
+    }));
   }
 
   /** Seconds. */
@@ -75,8 +74,8 @@ export class Player {
   }
   /** How the song lies on the sound device's clock; null while it is not heard. */
   get score(): Score | null {
-    const segment = this.#segments.at(-1);
-    if (!this.#playing || !this.#audible() || segment?.clock !== 'audio') return null;
+    const segment = this.#course.latest;
+    if (!this.#playing || !this.#course.audible || segment?.clock !== 'audio') return null;
     return { context: this.#output.context!, output: this.#output.node!, segment };
   }
   /** 0..1. */
@@ -89,7 +88,7 @@ export class Player {
   }
   /** Which clock drives the time now. */
   get clock(): 'audio' | 'timer' {
-    return this.#audible() ? 'audio' : 'timer';
+    return this.#course.audible ? 'audio' : 'timer';
   }
 
   /** Calls back after every change of state (not of time). Returns the way to stop that. */
@@ -100,22 +99,21 @@ export class Player {
 
   /** Takes another song; the former one stops. Without a buffer (still decoding) the timer can already run. */
   load(duration: number, buffer: AudioBuffer | null): void {
-    this.#stopSource();
+    this.#course.stop();
     this.#playing = false;
-    this.#segments = [];
     this.#position = 0;
     this.#loop = null;
     this.#bounds = null;
     this.#duration = duration;
-    this.#buffer = buffer;
+    this.#course.buffer = buffer;
     this.#changed();
   }
 
   /** Gives the sound of a song that already runs; it joins in without a jump. */
   attach(buffer: AudioBuffer): void {
-    this.#buffer = buffer;
+    this.#course.buffer = buffer;
     this.#duration = buffer.duration;
-    if (this.#playing) this.#resumeSound();
+    this.#course.joinSound();
     this.#changed();
   }
 
@@ -126,7 +124,7 @@ export class Player {
     const end = this.#loop?.end ?? this.#last;
     if (this.#position >= end - 1e-3) this.#position = start;
     this.#playing = true;
-    this.#startAt(this.#position);
+    this.#course.startAt(this.#position);
     this.#changed();
   }
 
@@ -135,8 +133,7 @@ export class Player {
     if (!this.#playing) return;
     this.#position = this.time();
     this.#playing = false;
-    this.#stopSource();
-    this.#segments = [];
+    this.#course.stop();
     this.#changed();
   }
 
@@ -144,7 +141,7 @@ export class Player {
   seek(time: number): void {
     const target = Math.min(Math.max(Number.isFinite(time) ? time : 0, this.#first), this.#last);
     this.#position = this.#loop && this.#playing && target >= this.#loop.end ? this.#loop.start : target;
-    if (this.#playing) this.#startAt(this.#position);
+    if (this.#playing) this.#course.startAt(this.#position);
     this.#changed();
   }
 
@@ -158,8 +155,8 @@ export class Player {
     if (before?.start === range?.start && before?.end === range?.end) return;
     this.#loop = range;
     if (this.#playing) {
-      if (range && this.time() >= range.end) this.#startAt(range.start);
-      else this.#continue();
+      if (range && this.time() >= range.end) this.#course.startAt(range.start);
+      else this.#course.continue();
     }
     this.#changed();
   }
@@ -174,8 +171,8 @@ export class Player {
     if (before?.start === this.#bounds?.start && before?.end === this.#bounds?.end) return;
     if (this.#loop) this.#loop = this.#inside(this.#loop);
     if (!this.#playing) this.#position = Math.min(Math.max(position, this.#first), this.#last);
-    else if (position < this.#first || position >= this.#last) this.#startAt(this.#loop?.start ?? this.#first);
-    else this.#continue();
+    else if (position < this.#first || position >= this.#last) this.#course.startAt(this.#loop?.start ?? this.#first);
+    else this.#course.continue();
     this.#changed();
   }
 
@@ -183,7 +180,7 @@ export class Player {
   setSpeed(speed: number): void {
     if (!Number.isFinite(speed)) return;
     this.#speed = Math.min(Math.max(speed, SPEED_RANGE.min), SPEED_RANGE.max);
-    if (this.#playing) this.#continue();
+    if (this.#playing) this.#course.continue();
     this.#changed();
   }
 
@@ -205,13 +202,12 @@ export class Player {
     if (this.#output.muted) return;
     const context = this.#output.open();
     if (context.state !== 'running') void context.resume().catch(() => undefined);
-    else if (this.#playing && !this.#source) this.#resumeSound();
+    else this.#course.joinSound();
   }
 
   /** Where in the song the listener is now, seconds. */
   time(): number {
-    if (!this.#playing) return this.#position;
-    return this.#positionOf(this.#activeSegment());
+    return this.#playing ? this.#course.time() : this.#position;
   }
 
   /** Stops at the end of the song, or of its part. Call it once a frame. */
@@ -241,108 +237,9 @@ export class Player {
     return end - start < MIN_LOOP ? null : { start, end };
   }
 
-  #activeSegment(): Segment {
-    for (let i = this.#segments.length - 1; i > 0; i -= 1) {
-      const segment = this.#segments[i];
-      if (this.#clockTime(segment.clock) >= segment.from) {
-        this.#segments.splice(0, i); // the listener has passed the ones before
-        return segment;
-      }
-    }
-    return this.#segments[0];
-  }
-
-  #clockTime(clock: Segment['clock']): number {
-    const { context } = this.#output;
-    return clock === 'timer' || !context ? this.#now() / 1000 : this.#heard.read(context, this.#now());
-  }
-
-  #positionOf(segment: Segment, at = this.#clockTime(segment.clock)): number {
-    return positionAt(segment, at);
-  }
-
-  #audible(): boolean {
-    return this.#source !== null && this.#output.running !== null;
-  }
-
-  /** A fresh start at a position: what was heard before no longer counts. */
-  #startAt(position: number): void {
-    this.#stopSource();
-    if (!this.#output.muted) this.#output.open();
-    const { running, context, muted } = this.#output;
-    if (running && this.#buffer) {
-      const from = running.currentTime + START_DELAY;
-      this.#segments = [this.#startSource(from, position)];
-      return;
-    }
-    this.#segments = [this.#timerSegment(position)];
-    if (context && !muted) void context.resume().catch(() => undefined);
-  }
-
-  /** New speed or loop from where the sound is being rendered, so that the listener hears no jump. */
-  #continue(): void {
-    const { context } = this.#output;
-    const last = this.#segments.at(-1);
-    if (!last) return;
-    if (last.clock === 'audio' && context && this.#audible()) {
-      const from = context.currentTime + START_DELAY;
-      const position = this.#positionOf(last, from);
-      this.#stopSource(from);
-      this.#segments.push(
-        this.#startSource(from, this.#loop && position >= this.#loop.end ? this.#loop.start : position),
-      );
-    } else {
-      this.#segments = [this.#timerSegment(this.time())];
-    }
-  }
-
-  /** From the timer to the sound: the source starts where the timer will be when its first sample is heard. */
-  #resumeSound(): void {
-    const context = this.#output.running;
-    if (!this.#playing || !this.#buffer || !context || this.#source) return;
-    this.#heard.reset();
-    const timer = this.#segments.at(-1);
-    if (!timer) return;
-    const from = context.currentTime + START_DELAY;
-    const untilHeard = from - this.#clockTime('audio');
-    const position = this.#positionOf(timer, this.#clockTime('timer') + untilHeard);
-    this.#segments = [timer, this.#startSource(from, position)];
-  }
-
-  #timerSegment(position: number): Segment {
-    return this.#segment('timer', this.#now() / 1000, position);
-  }
-
-  #startSource(from: number, position: number): Segment {
-    this.#source = new SongSource(this.#output.context!, this.#output.node!, this.#buffer!, {
-      from,
-      position: Math.min(position, Math.max(0, this.#duration - 1e-3)),
-      rate: this.#speed,
-      loop: this.#loop,
-      end: this.#bounds ? this.#last : null,
-    });
-    return this.#segment('audio', from, position);
-  }
-
-  #segment(clock: Segment['clock'], from: number, position: number): Segment {
-    return { clock, from, position, rate: this.#speed, loop: this.#loop, end: this.#last };
-  }
-
-  #stopSource(at = this.#output.context?.currentTime ?? 0): void {
-    this.#source?.stop(at);
-    this.#source = null;
-  }
-
   #onStateChange(): void {
-    if (this.#output.running) {
-      this.#resumeSound();
-    } else if (this.#playing && this.#source) {
-      // The device was taken away (a call, sleep): the dance goes on silently and the sound joins in again later.
-      const position = this.time();
-      this.#stopSource();
-      this.#heard.reset();
-      this.#segments = [this.#timerSegment(position)];
-    }
+    if (this.#output.running) this.#course.joinSound();
+    else this.#course.leaveSound();
     this.#changed();
   }
 
