@@ -78,18 +78,19 @@ async function sheet(request: SheetRequest, progress: (done: number) => void, si
   const brush = page.getContext('2d');
   if (!brush) throw new Error('This browser cannot draw the picture: close other tabs and try again.');
   brush.scale(scale, scale);
-  const set = await FilmSet.open(canvas, 'none', FIELD_OF_VIEW, request.look);
+  const set = await FilmSet.open(canvas, 'none', FIELD_OF_VIEW, request.look, request.avatar);
+  const { size } = set.dancerSize;
+  const away = EYES.away * size;
   try {
     const figures = drawSheet(brush, layout, request, PALETTE);
     for (const [i, { rotations }] of poses.entries()) {
       const quaternions = poseToQuaternions(rotations);
       const azimuth = headingOf(quaternions) + ASIDE;
-      const [x, y, z] = standingRoot(quaternions);
       set.draw({
-        pose: { quaternions, root: [x, y, z] },
-        position: [x + Math.sin(azimuth) * EYES.away, EYES.height, z + Math.cos(azimuth) * EYES.away],
-        target: [x, EYES.target, z],
-        centre: [x, z],
+        pose: { quaternions, root: standingRoot(quaternions) },
+        position: [Math.sin(azimuth) * away, EYES.height * size, Math.cos(azimuth) * away],
+        target: [0, EYES.target * size, 0],
+        centre: [0, 0],
         glow: 0,
       });
       figures(i, canvas);

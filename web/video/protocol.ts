@@ -64,6 +64,8 @@ export interface SheetRequest {
   tempo: number | null;
   poses: readonly SheetPose[];
   look: FigureLook;
+  /** A character of the visitor's own in the figure's place. */
+  avatar?: AvatarSource;
   /** 1 = 2400 pixels across. */
   scale: number;
 }

@@ -1,5 +1,5 @@
 /** Pictures of the dance: a still, a contact sheet of its key poses, a small animation. They only read the project. */
-import { DEFAULT_LOOK } from '../../core/figure-look';
+import { DEFAULT_LOOK, type FigureLook } from '../../core/figure-look';
 import { drawInWorkerLater } from '../../video/draw-later';
 import { loopPlan, LOOP_SIZE } from '../../video/loop-plan';
 import { framePlan, pictureSettings, videoSize, type PictureOptions } from '../../video/options';
@@ -26,18 +26,22 @@ export function stillActions({ state, services }: Context) {
   const make = (call: PictureCall, { onProgress, signal }: PictureHooks) =>
     draw(call, (done) => onProgress?.(done), signal ?? new AbortController().signal);
 
+  /** Who is to be seen: a character of the visitor's own, or our figure in its clothes. */
+  const dancer = (look: FigureLook | undefined): Pick<SceneRequest, 'look' | 'avatar'> => {
+    const avatar = state.avatar.value?.source;
+    return { look: look ?? DEFAULT_LOOK, ...(avatar ? { avatar } : {}) };
+  };
+
   const scene = (): Pick<SceneRequest, 'motion' | 'view' | 'look' | 'avatar' | 'grid'> => {
     const dance = state.onStage.value;
     if (!dance || dance.kind === 'preview') {
       throw new Error('There is no dance yet: drop a song and press Generate, then save a picture of it.');
     }
     const { camera, look } = state.document.value;
-    const avatar = state.avatar.value?.source;
     return {
       motion: dance.motion,
       view: camera,
-      look: look ?? DEFAULT_LOOK,
-      ...(avatar ? { avatar } : {}),
+      ...dancer(look),
       grid: state.grid.value,
     };
   };
@@ -81,7 +85,7 @@ export function stillActions({ state, services }: Context) {
       });
       const title = (state.song.value?.reference.name ?? 'Dance').replace(/\.[a-z0-9]{2,5}$/i, '');
       return make(
-        { type: 'sheet', request: { title, tempo: grid?.tempo ?? null, poses, look: look ?? DEFAULT_LOOK, scale } },
+        { type: 'sheet', request: { title, tempo: grid?.tempo ?? null, poses, ...dancer(look), scale } },
         options,
       );
     },

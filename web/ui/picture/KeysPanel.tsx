@@ -39,7 +39,7 @@ function Sheet({ count, name }: { count: number; name: string }) {
   const { keyPoses, look } = documentOnStage(store.state);
   const shown = Math.min(count, MOST_POSES);
   const { width, height } = sheetLayout(shown);
-  const preview = usePreview(JSON.stringify([keyPoses, look]), (hooks) =>
+  const preview = usePreview(JSON.stringify([keyPoses, look, store.state.avatar.value?.id]), (hooks) =>
     store.exportKeyPoses({ ...hooks, scale: SMALL }),
   );
   return (
