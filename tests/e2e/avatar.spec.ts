@@ -48,6 +48,33 @@ const watch = (page: Page, pictures: number) =>
     { feet: FEET, wrist: jointIndex('right_wrist'), pictures },
   );
 
+type Kind = 'exportPicture' | 'exportKeyPoses';
+
+/** A small picture of the dance, and the contact sheet of its key poses, their dancers cut out: 1 where one is. */
+const silhouettes = (page: Page, kinds: readonly Kind[]) =>
+  page.evaluate(async (kinds) => {
+    const made: number[][] = [];
+    for (const kind of kinds) {
+      const options = { size: 180, aspect: '9:16', camera: 'front', background: 'none', time: 2 } as const;
+      const blob =
+        kind === 'exportPicture'
+          ? await window.posebeat.exportPicture(options)
+          : await window.posebeat.exportKeyPoses({ scale: 0.1 });
+      const picture = await createImageBitmap(blob);
+      const brush = new OffscreenCanvas(picture.width, picture.height).getContext('2d')!;
+      brush.drawImage(picture, 0, 0);
+      const { data } = brush.getImageData(0, 0, picture.width, picture.height);
+      // The sheet has no see-through ground: there a dancer is what is brighter than all round it.
+      const bright = (at: number) => data[at] + data[at + 1] + data[at + 2] > 300;
+      made.push(
+        Array.from({ length: data.length / 4 }, (_, i) =>
+          Number(kind === 'exportPicture' ? data[i * 4 + 3] > 128 : bright(i * 4)),
+        ),
+      );
+    }
+    return made;
+  }, kinds);
+
 /** It moves, and one of its feet is on the floor or just above it, never below. */
 async function expectFeetOnFloor(page: Page): Promise<void> {
   const lowest = await watch(page, 6);
@@ -61,10 +88,23 @@ test('a character of one’s own dances, is kept, and leaves as a file with the 
   const errors = collectErrors(page);
   await page.setViewportSize({ width: 900, height: 560 });
   await open(page);
+  const kinds = ['exportPicture', 'exportKeyPoses'] as const;
+  const figures = await silhouettes(page, kinds);
 
   await drop(page, mixamoGlb(), 'Robo.glb');
   await dances(page, 'Robo');
   await expectFeetOnFloor(page);
+
+  // It is in the pictures too, in our figure's place.
+  const characters = await silhouettes(page, kinds);
+  kinds.forEach((kind, i) => {
+    const count = (pixels: readonly number[]) => pixels.filter((pixel) => pixel === 1).length;
+    const changed = characters[i].map((pixel, at) => Number(pixel !== figures[i][at]));
+    expect(characters[i], kind).toHaveLength(figures[i].length);
+    expect(count(characters[i]), kind).toBeGreaterThan(0.3 * count(figures[i]));
+    expect(count(characters[i]), kind).toBeLessThan(3 * count(figures[i]));
+    expect(count(changed), kind).toBeGreaterThan(0.1 * count(figures[i]));
+  });
 
   // What cannot dance changes nothing.
   for (const [bytes, name] of [
