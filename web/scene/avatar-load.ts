@@ -11,6 +11,7 @@ import {
 } from 'three';
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import type { MToonMaterial, VRM } from '@pixiv/three-vrm';
+import { shrinkTextures } from './avatar-textures';
 
 /** A file as three has it. */
 export interface LoadedAvatar {
@@ -50,6 +51,8 @@ export async function loadAvatar(bytes: Uint8Array, isVrm: boolean): Promise<Loa
     if (!known || isAbove(object, known)) nodes[node] = object;
   }
   suitLight(gltf.scene);
+  const textures = [...gltf.parser.associations.keys()].filter((each) => each instanceof Texture);
+  await shrinkTextures(textures as Texture[]);
   return { scene: gltf.scene, nodes, vrm: (gltf.userData.vrm as VRM | undefined) ?? null };
 }
 

@@ -66,6 +66,7 @@ export class FilmSet {
     const onStage = background === 'stage';
     const dancer = avatar ? await (await import('./avatar')).openAvatar(avatar) : await dressed(look);
     const set = new FilmSet(renderer, dancer, width / height, fieldOfView, onStage);
+    for (const part of [set.lights, set.floor]) part.fit(set.dancerSize.size);
     if (background.startsWith('#')) set.scene.background = new Color(background);
     await renderer.compileAsync(set.scene, set.camera);
     return set;

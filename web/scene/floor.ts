@@ -31,13 +31,18 @@ const BLOCKERS: [number, number][] = (
   ] as const
 ).map(([name, radius]) => [jointIndex(name), radius]);
 
+/** Shadows of our figure end so far from the middle of the light, metres. */
+const SHADOW_REACH = 2.6;
+
 /** The floor: a soft pool of light with a fading grid, contact shadows under the body and a glow on the beat. */
 export class Floor {
   readonly mesh: Mesh;
   private readonly blockers = BLOCKERS.map(() => new Vector4());
+  private size = 1;
   private readonly uniforms = {
     blockers: { value: this.blockers },
     glow: { value: 0 },
+    reach: { value: SHADOW_REACH },
     horizon: { value: STAGE_COLOURS.horizon },
     ground: { value: STAGE_COLOURS.floor },
   };
@@ -63,16 +68,19 @@ export class Floor {
     this.mesh.position.set(x, 0, z);
   }
 
+  /** Makes shadows fit a dancer so many times our figure's height. */
+  fit(size: number): void {
+    this.size = size;
+    this.uniforms.reach.value = SHADOW_REACH * Math.max(1, size);
+  }
+
   /** Places the contact shadows. `joints` is 24 x 3 world positions, metres. */
   shade(joints: Float32Array): void {
-    BLOCKERS.forEach(([joint, radius], i) =>
-      this.blockers[i].set(
-        joints[joint * 3],
-        Math.max(joints[joint * 3 + 1], radius * 0.6),
-        joints[joint * 3 + 2],
-        radius,
-      ),
-    );
+    BLOCKERS.forEach(([joint, own], i) => {
+      const radius = own * this.size;
+      const [x, y, z] = joints.subarray(joint * 3, joint * 3 + 3);
+      this.blockers[i].set(x, Math.max(y, radius * 0.6), z, radius);
+    });
   }
 
   /** Strength of the beat's glow, 0..1. */
@@ -142,7 +150,7 @@ const FRAGMENT = /* glsl */ `
 #include <shadowmap_pars_fragment>
 #include <shadowmask_pars_fragment>
 uniform vec4 blockers[${BLOCKERS.length}];
-uniform float glow;
+uniform float glow, reach;
 uniform vec3 horizon, ground;
 varying vec3 vFloor;
 varying vec2 vLocal;
@@ -173,7 +181,7 @@ void main() {
   float away = sqrt(away2);
   vec3 light = ground * mix(0.3, 1.0, exp(-away2 * 0.3)) * 1.35;
   float lines = gridLine(vFloor.xz, 0.005) * exp(-away2 * 0.11);
-  if (away < 2.6) {
+  if (away < reach) {
     float open = openSky();
     light *= mix(0.25, 1.0, open) * mix(0.5, 1.0, getShadowMask());
     lines *= open;

@@ -348,7 +348,7 @@ class WebGLStage implements Stage {
     this.place.group.visible = avatar !== null;
     if (this.figure) this.figure.mesh.visible = avatar === null;
     for (const { group } of [this.onion, this.path]) group.scale.setScalar(avatar?.stride ?? 1);
-    this.view.fit(avatar?.size ?? 1);
+    for (const part of [this.view, this.lights, this.floor]) part.fit(avatar?.size ?? 1);
   }
 
   private draw(seconds = 0): void {
