@@ -2,7 +2,9 @@ import { describe, expect, it } from 'vitest';
 import { forwardKinematics, JOINT_COUNT, jointIndex, PARENTS, worldRotations } from '../../web/core/skeleton';
 import { angleBetween, axisAngleToQuaternion, multiply, poseToQuaternions } from '../../web/core/rotation';
 import { createIkSolver } from '../../web/core/ik';
+import { withinLimits } from '../../web/core/joint-limits';
 import { CAPSULES, pickBody, placePoint, rayCapsule, standingRoot, SUPPORTS } from '../../web/scene/body-points';
+import { FkTurn } from '../../web/scene/fk-turn';
 import { Footing } from '../../web/scene/footing';
 import { headingOf } from '../../web/scene/heading';
 import { IkDrag, reachPose } from '../../web/scene/ik-drag';
@@ -64,6 +66,40 @@ describe('turning a joint', () => {
     expect(jointLabel(jointIndex('left_elbow'))).toBe('Left elbow');
     expect(jointLabel(jointIndex('right_foot'))).toBe('Right toes');
     expect(jointLabel(0)).toBe('Hips (whole body)');
+  });
+});
+
+describe('turning a joint within its limits', () => {
+  const elbow = jointIndex('left_elbow');
+  const shoulder = jointIndex('left_shoulder');
+  const part = (edit: PoseEdit, joint: number) => edit.quaternions.slice(joint * 4, joint * 4 + 4);
+  const far = axisAngleToQuaternion([0, 2.5, 0]);
+
+  it('stops at the limit, unless limits are off or the joint was past it before', () => {
+    const edit = new PoseEdit();
+    const turn = new FkTurn(edit);
+    turn.start(elbow);
+    turn.to(elbow, far, { limits: true, mirror: false });
+    expect(withinLimits(elbow, part(edit, elbow))).toBe(true);
+    expect(angleBetween(part(edit, elbow), far)).toBeGreaterThan(0.5);
+    turn.to(elbow, far, { limits: false, mirror: false });
+    expect(angleBetween(part(edit, elbow), far)).toBeLessThan(1e-3);
+    edit.commit();
+    turn.start(elbow);
+    turn.to(elbow, far, { limits: true, mirror: false });
+    expect(angleBetween(part(edit, elbow), far)).toBeLessThan(1e-3);
+  });
+
+  it('gives the other side its mirror image when asked to, and leaves it alone otherwise', () => {
+    const edit = new PoseEdit();
+    const turn = new FkTurn(edit);
+    const q = axisAngleToQuaternion([0.2, -0.3, 0.4]);
+    const other = jointIndex('right_shoulder');
+    turn.start(shoulder);
+    turn.to(shoulder, q, { limits: false, mirror: false });
+    expect([...part(edit, other)]).toEqual([0, 0, 0, 1]);
+    turn.to(shoulder, q, { limits: false, mirror: true });
+    expect(angleBetween(part(edit, other), [q[0], -q[1], -q[2], q[3]])).toBeLessThan(1e-3);
   });
 });
 

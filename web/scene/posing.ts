@@ -1,13 +1,14 @@
-import { Plane, Vector3, type Camera, type Scene } from 'three';
+import type { Camera, Scene } from 'three';
 import { createIkSolver, type IkSolver } from '../core/ik';
-import { clampRotation, limitExcess } from '../core/joint-limits';
-import { MIRROR, PARENTS } from '../core/skeleton';
+import { PARENTS } from '../core/skeleton';
 import type { PoseTools } from '../core/types';
 import { BalanceOverlay } from './balance-overlay';
 import type { Figure } from './figure';
+import { FkTurn } from './fk-turn';
 import { Footing } from './footing';
 import { Gizmo } from './gizmo';
 import { Handles } from './handles';
+import { HeldDot } from './held-dot';
 import { IkDrag } from './ik-drag';
 import { Picker, type JointHover } from './picker';
 import { PoseEdit, rotateLocal } from './pose-edit';
@@ -31,8 +32,6 @@ export interface PosingHost {
 
 /** Keyboard changes within this time are one change, so that holding a key is one step to undo. Milliseconds. */
 const NUDGE_PAUSE = 450;
-/** Step of a drag while Shift is held, metres. */
-const STEP = 0.05;
 const UPRIGHT = [0, 0, 0, 1];
 
 /**
@@ -44,6 +43,7 @@ export class Posing {
   readonly selectListeners = new Set<(joint: number | null) => void>();
   readonly hoverListeners = new Set<(hover: JointHover | null) => void>();
   readonly handles = new Handles();
+  private readonly turning = new FkTurn(this.edit);
   private readonly balance = new BalanceOverlay();
   private readonly footing: Footing;
   /** Made when pose mode is first entered: most visitors watch before they pose. */
@@ -67,10 +67,7 @@ export class Posing {
   private nudgeTimer: ReturnType<typeof setTimeout> | undefined;
   /** The drag by inverse kinematics under way and where its joint is wanted. */
   private drag: { ik: IkDrag; target: number[]; keys: boolean } | null = null;
-  /** A dot that is held: the plane it moves in, and where the pointer was. */
-  private held: { plane: Plane; from: Vector3 } | null = null;
-  /** Degrees that a joint being turned was outside its limits before, and its other side. */
-  private slack = [0, 0];
+  private held: HeldDot | null = null;
 
   constructor(private readonly host: PosingHost) {
     this.footing = new Footing(host.calm);
@@ -139,7 +136,7 @@ export class Posing {
     const joint = this.selected;
     if (!this.active || joint === null || this.dragging) return;
     if (this.drag) this.flush();
-    if (!this.edit.open) this.beginTurn(joint);
+    if (!this.edit.open) this.turning.start(joint);
     const q = this.edit.quaternions.slice();
     rotateLocal(q, joint, axis, radians);
     this.turn(joint, q.subarray(joint * 4, joint * 4 + 4));
@@ -207,7 +204,7 @@ export class Posing {
         if (this.selected === null) return;
         this.flush();
         if (this.tools.mode === 'move') this.beginMove(this.selected, false);
-        else this.beginTurn(this.selected);
+        else this.turning.start(this.selected);
       },
       turned: (q) => this.selected !== null && this.edit.open && this.turn(this.selected, q),
       moved: (position) => this.drag && this.moveTo(position),
@@ -268,25 +265,8 @@ export class Posing {
     }
   }
 
-  private quaternion(joint: number): Float32Array {
-    return this.edit.quaternions.subarray(joint * 4, joint * 4 + 4);
-  }
-
-  private beginTurn(joint: number): void {
-    this.edit.start();
-    this.slack = [joint, MIRROR[joint]].map((each) => limitExcess(each, this.quaternion(each)));
-  }
-
-  /** Gives a joint a rotation, inside the limits where they are on, and the other side its mirror image. */
-  private turn(joint: number, q: ArrayLike<number>): void {
-    const next = this.edit.quaternions.slice();
-    const set = (each: number, value: ArrayLike<number>, slack: number) =>
-      next.set(this.tools.limits ? clampRotation(each, value, undefined, slack) : value, each * 4);
-    set(joint, q, this.slack[0]);
-    const [x, y, z, w] = next.subarray(joint * 4, joint * 4 + 4);
-    const other = MIRROR[joint];
-    if (this.tools.mirror && other !== joint) set(other, [x, -y, -z, w], Math.max(...this.slack));
-    this.edit.setAll(next);
+  private turn(joint: number, rotation: ArrayLike<number>): void {
+    this.turning.to(joint, rotation, this.tools);
     this.refresh();
   }
 
@@ -321,20 +301,14 @@ export class Posing {
     this.flush();
     this.beginMove(joint, false);
     if (!this.drag) return;
-    const from = new Vector3(...this.drag.ik.from);
-    const plane = new Plane().setFromNormalAndCoplanarPoint(this.host.camera.getWorldDirection(new Vector3()), from);
-    this.held = { plane, from: this.picker.aim(event).intersectPlane(plane, new Vector3()) ?? from };
+    this.held = new HeldDot(this.picker, this.host.camera, this.drag.ik.from, event);
     this.hover(null);
     this.host.element.style.cursor = 'grabbing';
   }
 
   private dragHeld(event: PointerEvent): void {
-    if (!this.held || !this.drag) return;
-    const point = this.picker.aim(event).intersectPlane(this.held.plane, new Vector3());
-    if (!point) return;
-    const { from } = this.drag.ik;
-    const way = point.sub(this.held.from).toArray();
-    this.moveTo(way.map((c, i) => from[i] + (event.shiftKey ? Math.round(c / STEP) * STEP : c)));
+    const target = this.held?.at(event);
+    if (target) this.moveTo(target);
   }
 
   private hover(joint: number | null): void {
