@@ -10,7 +10,9 @@ import { tip } from '../shortcuts';
 import { useStore } from '../store-context';
 import { takeFocus } from '../video/VideoProgress';
 import { curveBytes, FORMAT_CARDS, sizeText, type CardFormat, type FormatCard } from './formats';
+import { NoDance } from './NoDance';
 import { PARTS, partsNow, type Part } from './parts';
+import { Progress } from './Progress';
 import { Segments } from './Segments';
 
 /** What was chosen last; it stays while the page is open. */
@@ -246,7 +248,6 @@ function Options({ card, parts, part }: { card: FormatCard; parts: readonly Part
 function SaveButton({ format, options }: { format: MotionFormat; options: MotionFileOptions }) {
   const store = useStore();
   const job = store.state.exportJob.value;
-  const percent = job ? Math.round(job.fraction * 100) : 0;
   return (
     <>
       {job ? (
@@ -257,11 +258,7 @@ function SaveButton({ format, options }: { format: MotionFormat; options: Motion
           title="Stop writing"
           onClick={() => store.cancelExport()}
         >
-          <span class="progress-fill" style={{ width: `${percent}%` }} />
-          <Icon name="close" />
-          <span class="progress-text">
-            Writing <span class="tabular">{percent}%</span>
-          </span>
+          <Progress word="Writing" done={job.fraction} />
         </button>
       ) : (
         <button
@@ -278,39 +275,5 @@ function SaveButton({ format, options }: { format: MotionFormat; options: Motion
         {job ? 'Writing the file.' : ''}
       </div>
     </>
-  );
-}
-
-function NoDance() {
-  const store = useStore();
-  const { song, generation } = store.state;
-  const busy = generation.value.status !== 'idle';
-  return (
-    <div class="export-empty">
-      <Icon name="person" size={32} />
-      <p>
-        <strong>There is no dance yet.</strong>
-      </p>
-      <p class="hint">
-        {busy
-          ? 'It is being made: come back when it is on stage.'
-          : song.value
-            ? 'Generate it first; then it can be saved as GLB, BVH, npz or JSON.'
-            : 'Drop a song and press Generate; then it can be saved as GLB, BVH, npz or JSON.'}
-      </p>
-      {song.value && !busy && (
-        <button
-          type="button"
-          class="secondary"
-          onClick={() => {
-            store.toggleExport(false);
-            void store.generateForPage();
-          }}
-        >
-          <Icon name="sparkles" />
-          Generate
-        </button>
-      )}
-    </div>
   );
 }

@@ -1,3 +1,4 @@
+import { Progress } from '../export/Progress';
 import { Icon } from '../Icon';
 import { takeFocus } from '../video/VideoProgress';
 import { cancelMaking, making, type Making } from './make';
@@ -21,7 +22,6 @@ export function SaveButton(props: {
       </button>
     );
   }
-  const percent = Math.round(done * 100);
   return (
     <button
       ref={takeFocus}
@@ -30,11 +30,7 @@ export function SaveButton(props: {
       title="Stop it"
       onClick={() => cancelMaking(what)}
     >
-      <span class="progress-fill" style={{ width: `${percent}%` }} />
-      <Icon name="close" />
-      <span class="progress-text">
-        Cancel <span class="tabular">{percent}%</span>
-      </span>
+      <Progress word="Cancel" done={done} />
     </button>
   );
 }

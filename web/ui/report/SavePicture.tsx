@@ -1,6 +1,7 @@
 import { useComputed, useSignal } from '@preact/signals';
 import { documentOnStage } from '../../app/on-stage';
 import { clockTime } from '../../app/snapping';
+import { Progress } from '../export/Progress';
 import { Icon } from '../Icon';
 import { useStore } from '../store-context';
 import { cancelPicture, pictureJob, savePicture } from './picture-job';
@@ -56,11 +57,7 @@ export function SavePicture() {
       </label>
       {job ? (
         <button type="button" class="secondary full progress" onClick={cancelPicture} title="Stop the picture">
-          <span class="progress-fill" style={{ width: `${Math.round(job.fraction * 100)}%` }} />
-          <Icon name="close" />
-          <span class="progress-text">
-            {job.text} <span class="tabular">{Math.round(job.fraction * 100)}%</span>
-          </span>
+          <Progress word={job.text} done={job.fraction} />
         </button>
       ) : (
         <button
