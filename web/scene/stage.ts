@@ -11,6 +11,7 @@ import { loadFigure, type FigureAsset } from './figure-asset';
 import { createBackdrop, Floor } from './floor';
 import { applyLook } from './filming-look';
 import { FollowCamera } from './follow-camera';
+import { FrameLoop } from './frame-loop';
 import { QualityGovernor } from './framing';
 import { Lights } from './lights';
 import { Onion, type Ghost } from './onion';
@@ -21,63 +22,14 @@ import { BodyClicks } from './body-clicks';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
 import { REST_HEIGHT } from './rest';
+import type { Stage } from './stage-type';
 
+export type { Stage } from './stage-type';
 export type { JointHover } from './posing';
 export type { PoseListener, PosePhase } from './pose-edit';
 export { jointLabel } from './pose-edit';
 export type { Ghost } from './onion';
 export type { PathPicture } from './path-picture';
-
-/** What the rest of the app does with the stage. Functions that take a listener return how to stop listening. */
-export interface Stage {
-  readonly canvas: HTMLCanvasElement;
-  /** Resolves when the figure is there; rejects when it cannot be loaded. */
-  readonly ready: Promise<void>;
-  /** Draws a frame of the dance, so many seconds of it after the one before (0 = a jump). In pose mode it is kept for later. */
-  show(pose: FramePose, seconds?: number): void;
-  /** A character in the place of our figure, in the dance; null = our own. The same one again is drawn anew. */
-  setAvatar(avatar: AvatarFigure | null): void;
-  /** Draws a frame of another dance beside it, to the left; null = the dance is alone. */
-  showBeside(pose: FramePose | null): void;
-  /** Dresses our own figure, and the second dancer like it. */
-  setLook(look: Readonly<FigureLook>): void;
-  /** Calls back before each screen refresh, with performance.now(). */
-  beforeFrame(callback: (now: number) => void): () => void;
-  setMode(mode: 'dance' | 'pose'): void;
-  readonly mode: 'dance' | 'pose';
-  /** Pose mode: shows this pose for editing, 24 x 3 axis-angle. Listeners are not told. */
-  editPose(rotations: ArrayLike<number>): void;
-  onPoseChange(listener: PoseListener): () => void;
-  selectJoint(joint: number | null): void;
-  onSelect(listener: (joint: number | null) => void): () => void;
-  onHover(listener: (hover: JointHover | null) => void): () => void;
-  /** Turns the selected joint about one of its own axes; quick repeats make one change. */
-  rotateSelected(axis: 'x' | 'y' | 'z', radians: number): void;
-  /** Moves the selected joint, metres in the world, the body following; quick repeats make one change. */
-  moveSelected(dx: number, dy: number, dz: number): void;
-  /** How the gizmo and the dots work: turning or moving, limits, mirroring, pins, the balance hint. */
-  setPoseTools(tools: PoseTools): void;
-  /** Shows neighbouring key poses as ghosts, at most one of a kind, or none. */
-  setGhosts(ghosts: readonly Ghost[] | null): void;
-  /** Shows the path of a joint, or none. The picture is copied. */
-  setPath(path: PathPicture | null): void;
-  /** Calls back when the dancing figure is clicked, with the joint of the limb that was hit. Not in pose mode. */
-  onBodyClick(listener: (joint: number) => void): () => void;
-  /** Whether the camera goes with the dancer. */
-  follow: boolean;
-  /** Back to the opening view. */
-  frameFigure(): void;
-  /** The view as it can be kept: null = the opening view, which fits itself to any screen. */
-  getView(): CameraView | null;
-  setView(view: CameraView): void;
-  /** Tells when the user has turned, zoomed or moved the camera, or asked for the opening view. */
-  onView(listener: (view: CameraView | null) => void): () => void;
-  /** A glow on the floor that fades by itself; strength 0..1. */
-  pulse(strength?: number): void;
-  /** Draws per second over the last second, and draw calls of the last one. */
-  stats(): { fps: number; drawCalls: number; pixelRatio: number };
-  dispose(): void;
-}
 
 /**
  * Builds the stage inside an element, whose size it follows.
@@ -107,9 +59,12 @@ class WebGLStage implements Stage {
   private look: Readonly<FigureLook> = DEFAULT_LOOK;
   private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
   private readonly governor = new QualityGovernor(Math.min(devicePixelRatio || 1, 2));
-  private readonly callbacks = new Set<(now: number) => void>();
+  private readonly loop = new FrameLoop(this.governor, {
+    update: (seconds) => this.update(seconds),
+    lowerQuality: () => this.lowerQuality(),
+    render: () => this.render(),
+  });
   private readonly watchers: { disconnect(): void }[] = [];
-  private readonly draws: number[] = [];
   private readonly last: { root: Float32Array; quaternions: Float32Array };
   private figure: Figure | null = null;
   private asset: FigureAsset | null = null;
@@ -118,9 +73,6 @@ class WebGLStage implements Stage {
   private dirty = true;
   private seen = true;
   private disposed = false;
-  private before = 0;
-  private drewBefore = false;
-  private request = 0;
 
   constructor(private readonly container: HTMLElement) {
     this.renderer = createRenderer();
@@ -156,7 +108,7 @@ class WebGLStage implements Stage {
     this.watch();
     this.ready = this.loadFigure();
     this.ready.catch(() => undefined);
-    this.request = requestAnimationFrame(this.tick);
+    this.loop.start();
   }
 
   get follow(): boolean {
@@ -198,8 +150,7 @@ class WebGLStage implements Stage {
   }
 
   beforeFrame(callback: (now: number) => void): () => void {
-    this.callbacks.add(callback);
-    return () => this.callbacks.delete(callback);
+    return this.loop.beforeFrame(callback);
   }
 
   setMode(mode: 'dance' | 'pose'): void {
@@ -291,9 +242,8 @@ class WebGLStage implements Stage {
   }
 
   stats(): { fps: number; drawCalls: number; pixelRatio: number } {
-    const now = performance.now();
     return {
-      fps: this.draws.filter((time) => now - time < 1000).length,
+      fps: this.loop.fps,
       drawCalls: this.renderer.info.render.calls,
       pixelRatio: this.renderer.getPixelRatio(),
     };
@@ -301,7 +251,7 @@ class WebGLStage implements Stage {
 
   dispose(): void {
     this.disposed = true;
-    cancelAnimationFrame(this.request);
+    this.loop.stop();
     for (const watcher of this.watchers) watcher.disconnect();
     this.posing.dispose();
     this.onion.dispose();
@@ -386,12 +336,8 @@ class WebGLStage implements Stage {
     if (this.figure) this.render();
   }
 
-  private readonly tick = (now: number): void => {
-    this.request = requestAnimationFrame(this.tick);
-    const elapsed = now - this.before;
-    this.before = now;
-    for (const callback of this.callbacks) callback(now);
-    const seconds = Math.min(Math.max(elapsed, 0), 100) / 1000;
+  /** Time goes by; true when there is something to draw, and somebody to see it. */
+  private update(seconds: number): boolean {
     if (this.view.update(seconds)) this.dirty = true;
     if (this.posing.update(seconds)) this.dirty = true;
     if (this.glow > 0) {
@@ -399,15 +345,8 @@ class WebGLStage implements Stage {
       this.floor.glow = this.glow;
       this.dirty = true;
     }
-    const draw = this.dirty && this.seen && this.figure !== null;
-    if (draw) {
-      if (this.drewBefore && this.governor.sample(elapsed)) this.lowerQuality();
-      this.render();
-      this.draws.push(now);
-      while (now - this.draws[0] > 1000) this.draws.shift();
-    }
-    this.drewBefore = draw;
-  };
+    return this.dirty && this.seen && this.figure !== null;
+  }
 
   private lowerQuality(): void {
     if (this.figure) this.figure.detail = this.governor.detail;
