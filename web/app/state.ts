@@ -1,5 +1,6 @@
 /** Everything the page shows, as signals. Only the actions write them. */
 import { computed, signal } from '@preact/signals';
+import { DEFAULT_TOOLS } from '../core/default-tools';
 import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
 import type { PoseClips } from '../core/formats/pose-sequence';
@@ -235,14 +236,7 @@ export function createState() {
     muted: signal(false),
     selection: signal<ReadonlySet<string>>(new Set()),
     draft: signal<PoseDraft | null>(null),
-    poseTools: signal<PoseTools>({
-      mode: 'rotate',
-      space: 'local',
-      limits: true,
-      mirror: false,
-      pins: new Set(),
-      balance: false,
-    }),
+    poseTools: signal<PoseTools>(DEFAULT_TOOLS),
     /** What was copied in the pose editor last. */
     poseClip: signal<PoseClip | null>(null),
     poseBlend: signal<PoseBlend | null>(null),

@@ -1,4 +1,5 @@
 import type { Camera, Scene } from 'three';
+import { DEFAULT_TOOLS } from '../core/default-tools';
 import { createIkSolver, type IkSolver } from '../core/ik';
 import { PARENTS } from '../core/skeleton';
 import type { PoseTools } from '../core/types';
@@ -50,14 +51,7 @@ export class Posing {
   private gizmo: Gizmo | null = null;
   private pointer: PosePointer | null = null;
   private solver: IkSolver | null = null;
-  private tools: PoseTools = {
-    mode: 'rotate',
-    space: 'local',
-    limits: true,
-    mirror: false,
-    pins: new Set(),
-    balance: false,
-  };
+  private tools: PoseTools = DEFAULT_TOOLS;
   private readonly abort = new AbortController();
   private readonly picker: Picker;
   private active = false;
