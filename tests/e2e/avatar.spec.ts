@@ -5,26 +5,13 @@ import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 import { anonymousGlb, chairGlb, mixamoGlb, vrm1File } from '../unit/support/avatar-rigs';
 import { violations } from './support/axe';
 import { dismissAll } from './support/states';
-import { collectErrors, open } from './support/page';
+import { collectErrors, dropFile, open } from './support/page';
 
 const SPEC = JSON.parse(readFileSync(new URL('../../web/core/spec.json', import.meta.url), 'utf8')) as {
   skeleton: { joints: string[] };
 };
 const jointIndex = (name: string) => SPEC.skeleton.joints.indexOf(name);
 const FEET = ['left_ankle', 'right_ankle', 'left_foot', 'right_foot'].map(jointIndex);
-
-async function drop(page: Page, bytes: Uint8Array, name: string): Promise<void> {
-  const files = await page.evaluateHandle(
-    ({ base64, name }) => {
-      const transfer = new DataTransfer();
-      transfer.items.add(new File([Uint8Array.from(atob(base64), (character) => character.charCodeAt(0))], name));
-      return transfer;
-    },
-    { base64: Buffer.from(bytes).toString('base64'), name },
-  );
-  await page.dispatchEvent('body', 'drop', { dataTransfer: files });
-  await files.dispose();
-}
 
 const who = (page: Page) => page.evaluate(() => window.posebeat.avatar()?.name ?? null);
 const dances = (page: Page, name: string) => expect.poll(() => who(page)).toBe(name);
@@ -91,7 +78,7 @@ test('a character of one’s own dances, is kept, and leaves as a file with the 
   const kinds = ['exportPicture', 'exportKeyPoses'] as const;
   const figures = await silhouettes(page, kinds);
 
-  await drop(page, mixamoGlb(), 'Robo.glb');
+  await dropFile(page, mixamoGlb(), 'Robo.glb');
   await dances(page, 'Robo');
   await expectFeetOnFloor(page);
 
@@ -111,14 +98,14 @@ test('a character of one’s own dances, is kept, and leaves as a file with the 
     [mixamoGlb().slice(0, 4000), 'broken.glb'],
     [chairGlb(), 'chair.glb'],
   ] as const) {
-    await drop(page, bytes, name);
+    await dropFile(page, bytes, name);
     await expect(page.getByRole('alert').filter({ hasText: name })).toBeVisible();
     expect(await who(page)).toBe('Robo');
   }
   await dismissAll(page);
 
   // Names that say nothing: the guess is shown, by keyboard.
-  await drop(page, anonymousGlb(), 'Strange.glb');
+  await dropFile(page, anonymousGlb(), 'Strange.glb');
   const bones = page.getByRole('dialog', { name: 'Which bone is which?' });
   await expect(bones).toBeVisible();
   expect(await violations(page, '.bones-panel')).toEqual([]);
@@ -132,13 +119,13 @@ test('a character of one’s own dances, is kept, and leaves as a file with the 
   await page.keyboard.press('Escape');
   await expect(bones).toBeHidden();
   expect(await who(page)).toBe('Robo');
-  await drop(page, anonymousGlb(), 'Strange.glb');
+  await dropFile(page, anonymousGlb(), 'Strange.glb');
   await bones.getByRole('combobox', { name: 'Hips' }).press('Enter');
   await bones.getByRole('button', { name: 'Use these bones' }).click();
   await dances(page, 'Strange');
   await expectFeetOnFloor(page);
 
-  await drop(page, vrm1File(), 'Box.vrm');
+  await dropFile(page, vrm1File(), 'Box.vrm');
   await dances(page, 'Box');
   await expectFeetOnFloor(page);
 
@@ -173,7 +160,7 @@ test('a character of one’s own dances, is kept, and leaves as a file with the 
   expect(way.distanceTo(ourWay.multiplyScalar(stride))).toBeLessThan(0.05);
 
   // It holds a motion now too: which of them is wanted?
-  await drop(page, bytes, 'both.glb');
+  await dropFile(page, bytes, 'both.glb');
   const question = page.getByRole('dialog', { name: 'A character that dances already' });
   await question.getByRole('button', { name: 'Use the motion' }).click();
   await expect(page.getByRole('heading', { name: 'Choose a frame' })).toBeVisible();

@@ -126,3 +126,17 @@ export function fourPoses(): number[][] {
     }),
   ];
 }
+
+/** Lets a file fall on the page. */
+export async function dropFile(page: Page, bytes: Uint8Array, name: string): Promise<void> {
+  const files = await page.evaluateHandle(
+    ({ base64, name }) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([Uint8Array.from(atob(base64), (character) => character.charCodeAt(0))], name));
+      return transfer;
+    },
+    { base64: Buffer.from(bytes).toString('base64'), name },
+  );
+  await page.dispatchEvent('body', 'drop', { dataTransfer: files });
+  await files.dispose();
+}

@@ -1,6 +1,7 @@
 import type { Page } from '@playwright/test';
+import { anonymousGlb } from '../../unit/support/avatar-rigs';
 import { bvh } from './bvh';
-import { fourPoses, loadSong } from './page';
+import { dropFile, fourPoses, loadSong } from './page';
 import { wav } from './songs';
 
 /** A state of the page that a visitor gets to, from the one before it in the list. */
@@ -188,6 +189,50 @@ export const STATES: readonly PageState[] = [
       await page.keyboard.press('Control+e');
       await page.locator('.export-card').filter({ hasText: 'Curves' }).click();
       await button(page, 'Dance it as curves').waitFor();
+    },
+  },
+  {
+    name: 'video panel',
+    scope: '.video-panel',
+    go: async (page) => {
+      await escape(page);
+      await page.keyboard.press('Control+Shift+e');
+      await page.locator('.video-panel[open]').waitFor();
+    },
+  },
+  {
+    name: 'picture tab',
+    scope: '.video-panel',
+    go: async (page) => {
+      await page.getByRole('radio', { name: 'Picture', exact: true }).check({ force: true });
+      await page.getByRole('combobox', { name: 'Shorter edge' }).waitFor();
+    },
+  },
+  {
+    name: 'key poses tab',
+    scope: '.video-panel',
+    go: async (page) => {
+      await page.getByRole('radio', { name: 'Key poses', exact: true }).check({ force: true });
+      await page.locator('.sheet-preview').waitFor();
+    },
+  },
+  {
+    name: 'share panel',
+    scope: '.share-panel',
+    go: async (page) => {
+      await escape(page);
+      await page.evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+      await page.keyboard.press('Shift+s');
+      await page.locator('.share-body').waitFor();
+    },
+  },
+  {
+    name: 'bones of a character',
+    scope: '.bones-panel',
+    go: async (page) => {
+      await escape(page);
+      await dropFile(page, anonymousGlb(), 'A character with rather a long name.glb');
+      await page.locator('.bones-panel[open]').waitFor();
     },
   },
   {
