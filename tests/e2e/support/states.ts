@@ -252,6 +252,11 @@ export const STATES: readonly PageState[] = [
       await escape(page);
       await page.keyboard.press('c');
       await page.locator('.curve-tools').waitFor();
+      // The surface makes room for them a moment later.
+      await page.waitForFunction(() => {
+        const [view, tools] = ['.curve-view', '.curve-tools'].map((each) => document.querySelector(each));
+        return view && tools && tools.getBoundingClientRect().top >= view.getBoundingClientRect().bottom - 1;
+      });
     },
   },
   {
