@@ -2,7 +2,7 @@
  * How an avatar's rest pose differs from our T-pose, bone by bone. The same as reading somebody's motion (formats/retarget.ts), the other
  * way about: our world rotation times the alignment is theirs.
  */
-import { bodyFrame, HABIT, LIMB, snapped } from '../formats/retarget';
+import { bodyFrame, HABIT, LIMB, NEXT, snapped } from '../formats/retarget';
 import { boundRest, type WorldRest } from '../formats/gltf-tree';
 import { arc } from '../formats/pose-sequence';
 import { REST } from '../rest';
@@ -10,19 +10,9 @@ import { conjugate, multiply, rotateVector } from '../rotation';
 import { jointIndex, JOINTS } from '../skeleton';
 import type { BoneMap } from './bones';
 import type { AvatarRig } from './rig';
-import { dot, minus, norm, pointOf, quaternionOf, type Vector } from './vector';
+import { dot, minus, norm, pointOf, quaternionOf, type Vector } from '../vector';
 
 const IDENTITY = [0, 0, 0, 1];
-/** For each joint the one its bone leads to. */
-const NEXT: Readonly<Record<string, string>> = {
-  hip: 'knee',
-  knee: 'ankle',
-  ankle: 'foot',
-  collar: 'shoulder',
-  shoulder: 'elbow',
-  elbow: 'wrist',
-  wrist: 'hand',
-};
 
 /** The alignment of a node that is turned as one of our joints. */
 export type Alignment = (node: number, joint: number) => number[];
@@ -53,7 +43,7 @@ export function alignRest(rig: AvatarRig, bones: Readonly<BoneMap>, driven: read
     // Toes are one with the foot, and a hand hangs as the forearm does: an arm lowered at rest is lowered as a whole.
     if (part === 'foot') return bend(`${side}ankle`);
     const above = part === 'wrist' ? bend(`${side}elbow`) : IDENTITY;
-    const next = NEXT[part] && side + NEXT[part];
+    const next = NEXT[joint];
     const way =
       part === 'wrist'
         ? handWay(rig, rest, bones[jointIndex(joint)])

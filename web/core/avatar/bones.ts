@@ -1,7 +1,7 @@
 /** Which bone of an avatar is which of our joints: what is needed, and what is wrong with a mapping. */
 import { JOINT_COUNT, jointIndex, JOINTS } from '../skeleton';
 import type { AvatarRig } from './rig';
-import { distance, dot, mean, minus, norm, pointOf, type Vector } from './vector';
+import { distance, dot, mean, minus, norm, pointOf, type Vector } from '../vector';
 
 /** For each of our 24 joints the avatar's node, -1 = it has none. */
 export type BoneMap = number[];

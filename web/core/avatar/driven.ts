@@ -4,7 +4,7 @@ import { jointIndex } from '../skeleton';
 import { alignRest } from './align';
 import { AVATAR_JOINTS, type BoneMap } from './bones';
 import type { AvatarRig } from './rig';
-import { minus, pointOf, quaternionOf } from './vector';
+import { minus, pointOf, quaternionOf } from '../vector';
 
 /** A node that is turned in every frame. */
 export interface DrivenNode {

@@ -1,5 +1,5 @@
 /** Where the joints are in a chain of bones, by the lengths that human limbs have. */
-import { dot, minus, norm, distance, type Vector } from './vector';
+import { dot, minus, norm, distance, type Vector } from '../vector';
 
 /** A foot or hand may be this long against the whole limb, a collar bone against the upper arm. */
 const LONGEST_FOOT = 0.45;

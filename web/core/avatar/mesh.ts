@@ -3,7 +3,7 @@ import * as v from 'valibot';
 import { conjugate, rotateVector } from '../rotation';
 import type { DrivenNode } from './driven';
 import type { AvatarRig } from './rig';
-import { pointOf, quaternionOf } from './vector';
+import { pointOf, quaternionOf } from '../vector';
 
 const index = v.pipe(v.number(), v.integer(), v.minValue(0));
 const schema = v.array(v.object({ primitives: v.array(v.object({ attributes: v.record(v.string(), v.unknown()) })) }));

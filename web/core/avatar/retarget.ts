@@ -15,7 +15,7 @@ import { driveNodes, type DrivenNode } from './driven';
 import { LONGEST, reachWithLeg } from './leg';
 import { makeLegs, placeSole, type FootedLeg } from './footed-legs';
 import type { AvatarRig } from './rig';
-import { pointOf, quaternionOf } from './vector';
+import { pointOf, quaternionOf } from '../vector';
 
 /** What an avatar's nodes are set to. */
 export interface AvatarFrame {

@@ -6,7 +6,7 @@ import { JOINT_COUNT, jointIndex } from '../skeleton';
 import type { BoneMap } from './bones';
 import { splitArm, splitLeg } from './limbs';
 import type { AvatarRig } from './rig';
-import { cross, distance, dot, mean, minus, norm, pointOf, type Vector } from './vector';
+import { cross, distance, dot, mean, minus, norm, pointOf, type Vector } from '../vector';
 
 /** Limbs that differ by less than this share in length are a pair. */
 const ALIKE = 0.15;

@@ -5,6 +5,7 @@
  */
 import { multiply, conjugate, matrixToQuaternion, rotateVector, type Numbers } from '../rotation';
 import { forwardKinematics, JOINT_COUNT, jointIndex, JOINTS, PARENTS } from '../skeleton';
+import { cross, dot, minus, type Vector } from '../vector';
 import { mapHumanoid, type NamedSkeleton } from './humanoid';
 import { arc, axisOf } from './pose-sequence';
 
@@ -16,12 +17,10 @@ export interface SourceRig extends NamedSkeleton {
   rotations: Numbers;
 }
 
-type Vector = [number, number, number];
-
 const IDENTITY = new Float32Array(JOINT_COUNT * 4).map((_, i) => (i % 4 === 3 ? 1 : 0));
 const REST = forwardKinematics(IDENTITY, [0, 0, 0]);
 /** For each joint the one its bone leads to; the middle of the body is turned as a whole. */
-const NEXT: Readonly<Record<string, string>> = {
+export const NEXT: Readonly<Record<string, string>> = {
   left_hip: 'left_knee',
   left_knee: 'left_ankle',
   left_ankle: 'left_foot',
@@ -44,13 +43,6 @@ export const HABIT = Math.cos((40 * Math.PI) / 180);
 /** A rest pose that is turned by less than 20 degrees from an axis stands on that axis. */
 const SNAP = Math.cos((20 * Math.PI) / 180);
 
-const minus = (a: Numbers, b: Numbers): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const cross = (a: Numbers, b: Numbers): Vector => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
-];
-const dot = (a: Numbers, b: Numbers) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 function unit(v: Vector): Vector {
   const length = Math.hypot(...v);
   if (!(length > 1e-9)) throw new Error('The rest pose of this skeleton has joints on top of each other.');

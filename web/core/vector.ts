@@ -1,5 +1,5 @@
 /** Points and directions as three numbers, for what is worked out once; what runs every frame is written out where it runs. */
-import type { Numbers } from '../rotation';
+import type { Numbers } from './rotation';
 
 export type Vector = [number, number, number];
 
