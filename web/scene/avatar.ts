@@ -28,10 +28,13 @@ const SETTLING_STEPS = 15;
 
 /**
  * Builds a character. Works where there is no page.
+ * @param rig of the file, where it was read before
  * @throws Error with a sentence for the visitor when the file cannot be shown
  */
-export async function openAvatar({ bytes, map }: AvatarSource): Promise<AvatarFigure> {
-  const rig = readAvatarRig(bytes);
+export async function openAvatar(
+  { bytes, map }: AvatarSource,
+  rig: AvatarRig = readAvatarRig(bytes),
+): Promise<AvatarFigure> {
   const loaded = await loadAvatar(bytes, rig.kind !== 'glTF');
   return new AvatarFigure(rig, loaded, map);
 }
@@ -44,7 +47,9 @@ export class AvatarFigure {
   private retargeter: AvatarRetargeter | null = null;
   private frame: AvatarFrame | null = null;
   private map: readonly number[] = [];
-  private last: FramePose | null = null;
+  /** The last pose; it counts once one was shown. */
+  private readonly last = { root: new Float32Array(3), quaternions: new Float32Array(JOINT_COUNT * 4) };
+  private posed = false;
   private dot: Mesh | null = null;
   private marked: number | null = null;
   /** From the soles to the top of hair and hat, the file's units. */
@@ -101,7 +106,7 @@ export class AvatarFigure {
     }
     this.loaded.scene.scale.setScalar(this.retargeter?.displayScale ?? 1);
     prepareMeshes(this.loaded.scene, this.height);
-    if (this.last) this.show(this.last);
+    if (this.posed) this.show(this.last);
   }
 
   /** Puts a dot on the bone of a joint of ours; null = on none. */
@@ -115,7 +120,9 @@ export class AvatarFigure {
    * @param seconds of the dance since the frame before: hair and skirts swing on; without it, or after a jump, they come to rest anew
    */
   show(pose: FramePose, seconds = 0): void {
-    this.last = { root: Float32Array.from(pose.root), quaternions: Float32Array.from(pose.quaternions) };
+    this.last.root.set(pose.root);
+    this.last.quaternions.set(pose.quaternions);
+    this.posed = true;
     const { retargeter, frame } = this;
     if (retargeter && frame) {
       retargeter.frame(pose, frame);

@@ -85,7 +85,7 @@ export function avatarActions(context: Context, store: AvatarStore = createAvata
     const plain = file instanceof File ? file.name.replace(/\.[a-z0-9]{2,5}$/i, '') : '';
     const name = known?.name || poseName(rig.title) || poseName(plain) || 'Character';
     const source = { bytes, name, map };
-    const figure = await parts.openAvatar(source);
+    const figure = await parts.openAvatar(source, rig);
     const { usable } = parts.judgeBones(rig, map);
     return {
       id,

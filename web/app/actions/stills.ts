@@ -1,12 +1,11 @@
 /** Pictures of the dance: a still, a contact sheet of its key poses, a small animation. They only read the project. */
-import { DEFAULT_LOOK, type FigureLook } from '../../core/figure-look';
 import { drawInWorkerLater } from '../../video/draw-later';
 import { loopPlan, LOOP_SIZE } from '../../video/loop-plan';
 import { framePlan, pictureSettings, videoSize, type PictureOptions } from '../../video/options';
 import type { PictureCall, SceneRequest } from '../../video/protocol';
 import { MOST_POSES, type SheetPose } from '../../video/sheet-layout';
 import type { Context } from '../context';
-import { documentOnStage } from '../on-stage';
+import { dancerOf, documentOnStage } from '../on-stage';
 import { barAndBeat, clockTime } from '../snapping';
 
 /** How the maker of a picture hears of it. */
@@ -26,22 +25,16 @@ export function stillActions({ state, services }: Context) {
   const make = (call: PictureCall, { onProgress, signal }: PictureHooks) =>
     draw(call, (done) => onProgress?.(done), signal ?? new AbortController().signal);
 
-  /** Who is to be seen: a character of the visitor's own, or our figure in its clothes. */
-  const dancer = (look: FigureLook | undefined): Pick<SceneRequest, 'look' | 'avatar'> => {
-    const avatar = state.avatar.value?.source;
-    return { look: look ?? DEFAULT_LOOK, ...(avatar ? { avatar } : {}) };
-  };
-
   const scene = (): Pick<SceneRequest, 'motion' | 'view' | 'look' | 'avatar' | 'grid'> => {
     const dance = state.onStage.value;
     if (!dance || dance.kind === 'preview') {
       throw new Error('There is no dance yet: drop a song and press Generate, then save a picture of it.');
     }
-    const { camera, look } = state.document.value;
+    const document = state.document.value;
     return {
       motion: dance.motion,
-      view: camera,
-      ...dancer(look),
+      view: document.camera,
+      ...dancerOf(state, document),
       grid: state.grid.value,
     };
   };
@@ -70,7 +63,8 @@ export function stillActions({ state, services }: Context) {
      * @throws Error when there are no key poses
      */
     async exportKeyPoses(options: PictureHooks & { scale?: number } = {}): Promise<Blob> {
-      const { keyPoses, look } = documentOnStage(state);
+      const document = documentOnStage(state);
+      const { keyPoses } = document;
       if (keyPoses.length === 0) throw new Error('There are no key poses yet: place some on the timeline first.');
       const grid = state.grid.value;
       const { scale = 1 } = options;
@@ -85,7 +79,7 @@ export function stillActions({ state, services }: Context) {
       });
       const title = (state.song.value?.reference.name ?? 'Dance').replace(/\.[a-z0-9]{2,5}$/i, '');
       return make(
-        { type: 'sheet', request: { title, tempo: grid?.tempo ?? null, poses, ...dancer(look), scale } },
+        { type: 'sheet', request: { title, tempo: grid?.tempo ?? null, poses, ...dancerOf(state, document), scale } },
         options,
       );
     },

@@ -1,8 +1,8 @@
 /** The dance as a video with the song. Only reads the project: whatever happens here, it stays as it is. */
 import type { TimeRange } from '../../core/document';
-import { DEFAULT_LOOK } from '../../core/figure-look';
 import { isAbort, messageOf, type Context } from '../context';
 import { fileName, saveFile } from '../download';
+import { dancerOf } from '../on-stage';
 import {
   framePlan,
   timeLeft,
@@ -139,8 +139,7 @@ export function videoActions(context: Context) {
           camera: settings.camera,
           background: settings.background,
           view: state.document.value.camera,
-          look: state.document.value.look ?? DEFAULT_LOOK,
-          ...(state.avatar.value ? { avatar: state.avatar.value.source } : {}),
+          ...dancerOf(state, state.document.value),
           grid: state.grid.value,
           sound: settings.sound && song?.buffer ? soundOf(song.buffer, plan) : null,
           format: settings.format,

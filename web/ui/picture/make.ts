@@ -2,6 +2,7 @@
 import { signal, useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import type { PictureHooks } from '../../app/actions/stills';
+import { messageOf } from '../../app/context';
 import type { Store } from '../../app/store';
 import { saveFile } from '../files';
 
@@ -35,7 +36,7 @@ export async function savePicture(
     saveFile(blob, name);
     store.notify('info', `${name} is saved.`);
   } catch (error) {
-    if (!own.signal.aborted) store.notify('error', error instanceof Error ? error.message : String(error));
+    if (!own.signal.aborted) store.notify('error', messageOf(error));
   } finally {
     if (running.get(what) === own) {
       running.delete(what);

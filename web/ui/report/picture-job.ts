@@ -1,5 +1,6 @@
 /** Making the picture of two dances, in the background: it goes on while other panels are shown, and can be stopped. */
 import { signal } from '@preact/signals';
+import { messageOf } from '../../app/context';
 import { documentOnStage } from '../../app/on-stage';
 import { EXACT_ERROR } from '../../app/report-reference';
 import type { Store } from '../../app/store';
@@ -84,7 +85,7 @@ export async function savePicture(store: Store, stretch: Stretch, clipId: string
     stop.throwIfAborted();
     saveFile(blob, fileName(`${music?.reference.name ?? 'dance'}`, 'png').replace(/\.png$/, ' in two dances.png'));
   } catch (error) {
-    if (!stop.aborted) store.notify('error', error instanceof Error ? error.message : String(error));
+    if (!stop.aborted) store.notify('error', messageOf(error));
   } finally {
     artist?.dispose();
     if (running === own) {
