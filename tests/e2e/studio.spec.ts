@@ -162,6 +162,8 @@ test('by mouse', async ({ page }) => {
   const { grid } = await project(page);
   const x = (time: number) => lane.x + 30 + (time / SECONDS) * (lane.width - 60);
   const ruler = (await page.locator('.timeline-surface').boundingBox())!.y + 10;
+  // The playhead stands where the tapping ended; on bar 5 it would be what is dragged.
+  await page.mouse.click(x(0.5), ruler);
   await page.mouse.move(x(grid!.downbeats[4]), ruler);
   await page.mouse.down();
   await page.mouse.move(x(grid!.downbeats[6]), ruler, { steps: 4 });

@@ -5,8 +5,13 @@ const TAGS = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'];
 
 /** What axe has against the page, or parts of it, by the rules of levels A and AA; one line each. */
 export async function violations(page: Page, scope?: string): Promise<string[]> {
-  // Colours are judged when they have arrived.
-  await page.evaluate(() => Promise.all(document.getAnimations().map((each) => each.finished.catch(() => undefined))));
+  // Colours are judged where they arrive, also those that change while axe looks.
+  await page.evaluate(() => {
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync('*, ::before, ::after { transition: none !important; }');
+    document.adoptedStyleSheets = [sheet];
+    return Promise.all(document.getAnimations().map((each) => each.finished.catch(() => undefined)));
+  });
   // There are no frames here, so that axe need not open a page of its own to put their results together.
   const axe = new AxeBuilder({ page }).setLegacyMode().options({
     runOnly: { type: 'tag', values: TAGS },

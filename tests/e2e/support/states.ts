@@ -198,6 +198,8 @@ export const STATES: readonly PageState[] = [
       await escape(page);
       await page.keyboard.press('Control+Shift+e');
       await page.locator('.video-panel[open]').waitFor();
+      // What the browser can encode is found out a moment later.
+      await button(page, 'Looking…').waitFor({ state: 'hidden' });
     },
   },
   {
