@@ -74,9 +74,11 @@ export async function loadModel<G>(
         `this page has ${specHash.slice(0, 8)}). Reload the page; if that does not help, export the model again.`,
     );
   }
-  const header = (await smallFile(`${folder}${files.golden}.json`, cache, 'json', title)) as GoldenHeader;
-  const bytes = (await smallFile(`${folder}${files.golden}.bin`, cache, 'bytes', title)) as ArrayBuffer;
-  const golden = files.parse(header, bytes, manifest);
+  const [header, bytes] = await Promise.all([
+    smallFile(`${folder}${files.golden}.json`, cache, 'json', title),
+    smallFile(`${folder}${files.golden}.bin`, cache, 'bytes', title),
+  ]);
+  const golden = files.parse(header as GoldenHeader, bytes as ArrayBuffer, manifest);
   const url = `${folder}${manifest.file}?${manifest.sha256.slice(0, 16)}`;
   const kept = await cache?.match(url);
   if (kept) {

@@ -30,10 +30,12 @@ function whenIdle(callback: () => void): () => void {
 export function SuggestLane() {
   const store = useStore();
   const { song, suggestion } = store.state;
-  const isOffered = song.value?.complete === true && suggestion.value.status === 'idle';
-  // Who comes near the empty timeline may press in a second: the model is then on its way already.
+  const isIdle = suggestion.value.status === 'idle';
+  const isWaiting = song.value !== null && isIdle;
+  const isOffered = isWaiting && song.value?.complete === true;
+  // While a song is listened to its model can come; who then comes near the empty timeline may press in a second.
   useEffect(() => {
-    if (!isOffered) return undefined;
+    if (!isWaiting) return undefined;
     const timeline = document.querySelector('.timeline');
     const warm = () => store.warmSuggester();
     timeline?.addEventListener('pointerenter', warm, { once: true });
@@ -42,7 +44,7 @@ export function SuggestLane() {
       stop();
       timeline?.removeEventListener('pointerenter', warm);
     };
-  }, [isOffered, store]);
+  }, [isWaiting, store]);
   if (!isOffered) return null;
   return (
     <button
