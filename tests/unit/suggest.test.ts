@@ -13,13 +13,12 @@ import {
   keysThatStay,
   suggestionBeats,
   suggestPoses,
-  temperatureOf,
   type StepRunner,
   type SuggestRequest,
 } from '../../web/core/suggest';
 import { FORBIDDEN, MOST_TRIES, VISIBLE_DISTANCE } from '../../web/core/suggest-moving';
 import { poseDistance, ROW_SIZE } from '../../web/core/suggest-pose';
-import type { StepInputs } from '../../web/core/suggest-step';
+import { temperatureOf, type StepInputs } from '../../web/core/suggest-step';
 import type { BeatGrid, Features, KeyPose } from '../../web/core/types';
 
 const SECONDS = 20;
@@ -127,6 +126,19 @@ describe('the beats that get a pose', () => {
   });
 });
 
+describe('the variation dial', () => {
+  it('is the temperature of the network: calm, as it was trained, bold', () => {
+    for (const [variation, temperature] of [
+      [0, 0.7],
+      [0.5, 1],
+      [1, 1.3],
+      [-1, 0.7],
+      [2, 1.3],
+    ])
+      expect(temperatureOf(variation)).toBeCloseTo(temperature, 12);
+  });
+});
+
 describe('suggesting', () => {
   it('walks the beats one by one: each step has the poses before it and the music around it', async () => {
     const steps: StepInputs[] = [];
@@ -154,7 +166,7 @@ describe('suggesting', () => {
     expect(steps[0].music.dims).toEqual([1, 27, 57]);
     expect(steps[2].music.data.subarray(18 * 57, 19 * 57)).toEqual(steps[1].music.data.subarray(19 * 57, 20 * 57));
     expect(steps[0].next_beats.data[0]).toBe(-1);
-    expect(steps[0].temperature.data[0]).toBeCloseTo(temperatureOf(0.5), 6);
+    expect(steps[0].temperature.data[0]).toBeCloseTo(1, 6);
   });
 
   it('leads to own key poses and goes on from them', async () => {

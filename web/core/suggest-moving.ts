@@ -1,6 +1,6 @@
 /** Keeps a suggested dance from standing still: a key pose that is nearly the one before it is stepped again. */
 import { poseDistance, poseOfRow, ROW_SIZE } from './suggest-pose';
-import type { StepContext } from './suggest-step';
+import { TEMPERATURES, type StepContext } from './suggest-step';
 import type { StepRunner } from './suggest';
 
 /** Two poses whose joints are less apart than this look the same, metres, mean over the joints. */
@@ -11,6 +11,8 @@ const FULL_SECONDS = 0.8;
 export const MOST_TRIES = 8;
 /** Each try is this much bolder: a network that is sure of a pose is sure of its neighbours too. */
 const BOLDER = 1.15;
+/** And not bolder than the dial can make it: the network's poses stay plausible up to here. */
+const BOLDEST = TEMPERATURES[1];
 /** Noise that rules a code out. */
 export const FORBIDDEN = -1e9;
 
@@ -53,7 +55,7 @@ export async function stepMoving(
 ): Promise<Float32Array> {
   let best: { row: Float32Array; moves: number } | undefined;
   for (let tried = 0; tried < MOST_TRIES; tried++) {
-    const { poses, codes } = await run(context.inputs(beat, Math.min(1, temperature * BOLDER ** tried), [noise]));
+    const { poses, codes } = await run(context.inputs(beat, Math.min(BOLDEST, temperature * BOLDER ** tried), [noise]));
     const row = poses.slice(0, ROW_SIZE);
     const moves = movement(poseOfRow(row), time, neighbours);
     if (!best || moves > best.moves) best = { row, moves };

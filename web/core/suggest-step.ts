@@ -9,6 +9,17 @@ const MUSIC_BEATS = pastBeats + 1 + futureBeats;
 const STYLES = spec.danceformer.styles;
 const ROTATION_SIZE = spec.model.rotationSize;
 
+/**
+ * The network's temperature at the ends of the variation dial: calm, and bold. Half way, at 1, poses move from beat to beat and differ
+ * as they do in real dance.
+ */
+export const TEMPERATURES = [0.7, 1.3] as const;
+
+/** Temperature of a variation, 0..1. */
+export function temperatureOf(variation: number): number {
+  return TEMPERATURES[0] + (TEMPERATURES[1] - TEMPERATURES[0]) * Math.min(Math.max(variation, 0), 1);
+}
+
 /** A key pose that stays. */
 export interface Fixed {
   /** Beats since the first one, with fractions. */

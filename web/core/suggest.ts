@@ -3,7 +3,7 @@ import { beatCount } from './beat-count';
 import { frameOf, type TimeRange } from './document';
 import { FORBIDDEN, stepMoving, VISIBLE_DISTANCE, type Neighbour } from './suggest-moving';
 import { poseOfRow, poseDistance, rowOfPose, ROW_SIZE } from './suggest-pose';
-import { StepContext, type Fixed, type StepInputs } from './suggest-step';
+import { StepContext, temperatureOf, type Fixed, type StepInputs } from './suggest-step';
 import { seededRandom } from './random';
 import { spec } from './spec';
 import type { BeatGrid, Features, KeyPose } from './types';
@@ -53,8 +53,6 @@ export interface SuggestHooks {
 const { pastPoses, codes } = spec.danceformer.suggest;
 /** A suggestion nearer than this to a key pose that stays, beats, would only fight it. */
 const ELBOW_ROOM = 0.6;
-/** The network's temperature at the ends of the variation dial: calm, and as varied as real dance. */
-const TEMPERATURES = [0.5, 1] as const;
 /** Samples of one call when alternates are looked for, and calls at most. */
 const ALTERNATE_BATCH = 8;
 const ALTERNATE_CALLS = 3;
@@ -111,11 +109,6 @@ function placesInBar({ beats, downbeats, beatsPerBar }: BeatGrid): number[] {
     if (lines.has(time)) bar = k;
     return (((k - bar) % beatsPerBar) + beatsPerBar) % beatsPerBar;
   });
-}
-
-/** Temperature of a variation. */
-export function temperatureOf(variation: number): number {
-  return TEMPERATURES[0] + (TEMPERATURES[1] - TEMPERATURES[0]) * Math.min(Math.max(variation, 0), 1);
 }
 
 /** Key poses on the beats that they are nearest to; of two on one beat the nearer. */
@@ -218,7 +211,7 @@ export async function alternatePoses(
       for (const code of taken) numbers[code] = FORBIDDEN;
       return numbers;
     });
-    const { poses, codes: used } = await run(context.inputs(target, 1, noise));
+    const { poses, codes: used } = await run(context.inputs(target, temperatureOf(0.5), noise));
     used.forEach((code, i) => {
       if (taken.has(code)) return;
       taken.add(code);
