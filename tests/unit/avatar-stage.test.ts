@@ -1,6 +1,24 @@
-import { Texture, Vector3 } from 'three';
+import { MToonMaterial, VRMUtils } from '@pixiv/three-vrm';
+import {
+  Bone,
+  BoxGeometry,
+  BufferGeometry,
+  Group,
+  InstancedMesh,
+  Line,
+  LineBasicMaterial,
+  Mesh,
+  MeshStandardMaterial,
+  Skeleton,
+  SkinnedMesh,
+  Texture,
+  Vector3,
+  type EventDispatcher,
+  type Object3D,
+} from 'three';
 import { afterEach, describe, expect, it, vi } from 'vitest';
 import { OWN_HEIGHT } from '../../web/scene/avatar';
+import { disposeScene } from '../../web/scene/avatar-load';
 import { LARGEST_TEXTURE, shrinkTextures } from '../../web/scene/avatar-textures';
 import { Lights } from '../../web/scene/lights';
 
@@ -64,5 +82,63 @@ describe('textures of a character', () => {
     await shrinkTextures([skin]);
     expect(skin.image).toBe(large);
     expect(large.close).not.toHaveBeenCalled();
+  });
+});
+
+describe('a character that is taken away', () => {
+  /** All kinds of parts that a file can bring, and the stage's shadow in the toon material as three puts it there. */
+  function character() {
+    const names = ['map', 'shadeMultiplyTexture', 'rimMultiplyTexture', 'outlineWidthMultiplyTexture'] as const;
+    const toonMaps = names.map(() => new Texture());
+    const toon = new MToonMaterial(Object.fromEntries(names.map((name, i) => [name, toonMaps[i]])));
+    const close = vi.fn();
+    const outlineMap = new Texture({ width: 1, height: 1, close } as unknown as ImageBitmap);
+    const outline = new MToonMaterial({ map: outlineMap, isOutline: true });
+    const shadow = new Texture();
+    Object.assign(toon.uniforms, { directionalShadowMap: { value: [shadow] } });
+    const bone = new Bone();
+    const skin = new SkinnedMesh(new BoxGeometry(), [toon, outline]);
+    skin.bind(new Skeleton([bone]));
+    skin.skeleton.computeBoneTexture();
+    const hat = new Mesh(new BoxGeometry(), new MeshStandardMaterial({ map: new Texture(), normalMap: new Texture() }));
+    const beads = new InstancedMesh(new BoxGeometry(), new MeshStandardMaterial(), 3);
+    const wire = new Line(new BufferGeometry(), new LineBasicMaterial());
+    const maps = [...toonMaps, outlineMap, hat.material.map!, hat.material.normalMap!];
+    const parts = {
+      skin: skin.geometry,
+      hat: hat.geometry,
+      beads: beads.geometry,
+      wire: wire.geometry,
+      instances: beads,
+    };
+    const materials = { toon, outline, felt: hat.material, glass: beads.material, copper: wire.material };
+    const owned = { ...parts, ...materials, bones: skin.skeleton.boneTexture!, ...maps };
+    return { scene: new Group().add(bone, skin, hat, beads, wire), owned, shadow, close };
+  }
+
+  /** How often each part is freed. */
+  function freed({ scene, owned, shadow }: ReturnType<typeof character>, free: (scene: Object3D) => void) {
+    const counts: Record<string, number> = {};
+    for (const [name, part] of Object.entries({ ...owned, shadow })) {
+      counts[name] = 0;
+      (part as EventDispatcher<{ dispose: object }>).addEventListener('dispose', () => (counts[name] += 1));
+    }
+    free(scene);
+    return counts;
+  }
+
+  it('frees all it has on the graphics card, pictures of toon materials and bones included, and nothing of the stage', () => {
+    const own = character();
+    const { shadow, ...counts } = freed(own, disposeScene);
+    expect(Object.entries(counts).filter(([, count]) => count === 0)).toEqual([]);
+    expect(shadow).toBe(0);
+    expect(own.close).toHaveBeenCalled();
+  });
+
+  it('frees no less than three-vrm itself', () => {
+    const theirs = freed(character(), (scene) => VRMUtils.deepDispose(scene));
+    const ours = freed(character(), disposeScene);
+    expect(Object.values(theirs).filter((count) => count > 0).length).toBeGreaterThan(15);
+    for (const [name, count] of Object.entries(theirs)) if (count > 0) expect(ours[name], name).toBeGreaterThan(0);
   });
 });

@@ -1,5 +1,6 @@
 /** The picture side of a character's file: three's objects for its nodes. Nothing is ever loaded from anywhere else. No page is needed. */
 import {
+  InstancedMesh,
   LoadingManager,
   Mesh,
   MeshStandardMaterial,
@@ -8,6 +9,7 @@ import {
   Texture,
   type Material,
   type Object3D,
+  type ShaderMaterial,
 } from 'three';
 import { GLTFLoader, type GLTF } from 'three/addons/loaders/GLTFLoader.js';
 import type { MToonMaterial, VRM } from '@pixiv/three-vrm';
@@ -111,19 +113,27 @@ export function prepareMeshes(scene: Object3D, height: number): void {
   });
 }
 
-/** Frees geometry, materials and pictures of a scene. */
+/** Frees geometries, bone textures, materials and pictures of a scene, lines and points included. */
 export function disposeScene(scene: Object3D): void {
   scene.traverse((object) => {
-    if (!(object instanceof Mesh)) return;
-    (object.geometry as { dispose(): void }).dispose();
+    // An instanced mesh has buffers of its own.
+    if (object instanceof InstancedMesh) object.dispose();
     if (object instanceof SkinnedMesh) object.skeleton.dispose();
-    for (const material of [object.material].flat() as Material[]) {
-      for (const value of Object.values(material) as unknown[]) {
-        if (!(value instanceof Texture)) continue;
-        value.dispose();
-        (value.source.data as { close?: () => void } | null)?.close?.();
+    const { geometry, material } = object as Partial<Mesh>;
+    geometry?.dispose();
+    for (const each of material ? [material].flat() : []) {
+      for (const texture of texturesOf(each)) {
+        texture.dispose();
+        (texture.source.data as { close?: () => void } | null)?.close?.();
       }
-      material.dispose();
+      each.dispose();
     }
   });
+}
+
+/** The pictures that a material brings: toon materials keep theirs in uniforms. The stage's shadows, lists of textures there, stay. */
+function texturesOf(material: Material): Texture[] {
+  const uniforms = Object.values((material as Partial<ShaderMaterial>).uniforms ?? {});
+  const values: unknown[] = [...Object.values(material), ...uniforms.map(({ value }) => value as unknown)];
+  return values.filter((value) => value instanceof Texture);
 }
