@@ -132,6 +132,24 @@ describe('characters of one’s own', () => {
     expect(state.avatar.value?.name).toBe('strange');
   });
 
+  it('asks about one character at a time, and frees one that is passed over', async () => {
+    const { store, state } = page();
+    await store.openCharacter(file(anonymousGlb(), 'one.glb'));
+    const first = vi.spyOn(state.avatarMapping.value!.figure, 'dispose');
+    await store.openCharacter(file(anonymousGlb(), 'two.glb'));
+    expect(state.avatarMapping.value?.name).toBe('two');
+    expect(first).toHaveBeenCalledTimes(1);
+    const second = vi.spyOn(state.avatarMapping.value!.figure, 'dispose');
+    await store.setAvatar(file(mixamoGlb(), 'sure.glb'));
+    expect(state.avatarMapping.value).toBeNull();
+    expect(second).toHaveBeenCalledTimes(1);
+    await store.checkBones();
+    const third = vi.spyOn(state.avatar.value!.figure, 'dispose');
+    await store.useAvatar(null);
+    expect(state.avatarMapping.value).toBeNull();
+    expect(third).toHaveBeenCalledTimes(1);
+  });
+
   it('gives a character in use its bones back when the question is left', async () => {
     const { store, state } = page();
     await store.openCharacter(file(mixamoGlb(), 'a.glb'));

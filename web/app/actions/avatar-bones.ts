@@ -17,6 +17,8 @@ export function bonesActions(
   /** Opens the dialog with a guess filled in. */
   async function askBones(avatar: AvatarInUse, { bones: guess, by }: BoneGuess): Promise<void> {
     parts = await opener();
+    // One question at a time: a file that comes while another is asked about takes its place.
+    if (state.avatarMapping.value?.figure !== avatar.figure) actions.cancelBones();
     const { rig } = avatar.figure;
     const map = [...avatar.source.map];
     state.avatarMapping.value = {

@@ -43,6 +43,8 @@ export function avatarActions(context: Context, store: AvatarStore = createAvata
   /** Puts a character on stage, or our own figure. */
   const show = (next: AvatarInUse | null): void => {
     const before = state.avatar.value;
+    // A question about whoever goes, or is passed over, is answered by that.
+    if (state.avatarMapping.value?.figure !== next?.figure) bones.actions.cancelBones();
     state.avatar.value = next;
     if (before && before.figure !== next?.figure) before.figure.dispose();
   };
