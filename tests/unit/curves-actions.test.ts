@@ -4,10 +4,13 @@ import { curvesOnStage, intervalInHand } from '../../web/app/actions/curves';
 import { createStore } from '../../web/app/store';
 import { rotationChannel, CHANNELS } from '../../web/core/curves';
 import { generateCurves } from '../../web/core/curves-dance';
+import { writeBvh } from '../../web/core/formats/bvh-write';
 import { TIMBRE_SIZE } from '../../web/core/mfcc';
 import { angleBetween } from '../../web/core/rotation';
+import { seedMotion } from '../../web/core/seed';
 import { jointIndex } from '../../web/core/skeleton';
 import type { Motion } from '../../web/core/types';
+import { stepClip, steadyGrid } from './dance';
 import { fakeReporter, fakeServices, settled, type DanceRequest, type Services } from './support/app';
 import { fakeIntervals } from './support/curves';
 import { fourPoses } from '../e2e/support/page';
@@ -261,6 +264,20 @@ describe('a change of a curve', () => {
     expect(keys()).toHaveLength(3);
     const copy = keys().find(({ id }) => store.state.selection.value.has(id))!;
     expect(anchors).not.toContain(copy.id);
+  });
+
+  it('never passes to a key pose out of an animation file', async () => {
+    const { store } = await withCurves();
+    const { keyPoses } = store.state.document.value;
+    const { anchors } = store.state.dance.value!.curves!;
+    // The last ones are gone, but the dance on stage still runs through them.
+    store.deleteKeys(new Set(keyPoses.slice(1).map(({ id }) => id)));
+    const steps = seedMotion(stepClip(), steadyGrid(10, 120, 0), 240);
+    await store.importPoseFile(new File([writeBvh(steps, { units: 'm' })], 'steps.bvh'));
+    store.useFileAsDance('beat');
+    const placed = [...store.state.selection.value];
+    expect(placed.length).toBeGreaterThan(3);
+    for (const id of placed) expect(anchors).not.toContain(id);
   });
 
   it('goes with a key pose that another is dragged onto, but stays while the drag only passes over it', async () => {
