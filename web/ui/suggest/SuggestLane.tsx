@@ -6,13 +6,15 @@ import { useStore } from '../store-context';
 /** How long an empty timeline is looked at before the model is fetched unasked, milliseconds. */
 const A_LOOK = 1200;
 
+/** The visitor wants nothing fetched that was not asked for. */
+const savesData = (): boolean =>
+  (navigator as Navigator & { connection?: { saveData?: boolean } }).connection?.saveData === true;
+
 /**
- * Calls back when somebody has looked at the page for a moment and it has nothing else to do; never where data is to be saved.
+ * Calls back when somebody has looked at the page for a moment and it has nothing else to do.
  * @returns takes the wish back
  */
 function whenIdle(callback: () => void): () => void {
-  const { connection } = navigator as Navigator & { connection?: { saveData?: boolean } };
-  if (connection?.saveData) return () => undefined;
   let idle: number | undefined;
   const timer = setTimeout(() => {
     if (document.visibilityState !== 'visible') return;
@@ -33,18 +35,19 @@ export function SuggestLane() {
   const isIdle = suggestion.value.status === 'idle';
   const isWaiting = song.value !== null && isIdle;
   const isOffered = isWaiting && song.value?.complete === true;
-  // While a song is listened to its model can come; who then comes near the empty timeline may press in a second.
+  // While a song is being listened to its model can come: who sees the empty timeline may press in a second.
   useEffect(() => {
     if (!isWaiting) return undefined;
     const timeline = document.querySelector('.timeline');
     const warm = () => store.warmSuggester();
     timeline?.addEventListener('pointerenter', warm, { once: true });
-    const stop = whenIdle(warm);
+    if (!savesData() && song.peek()?.complete === false) warm();
+    const stop = savesData() ? undefined : whenIdle(warm);
     return () => {
-      stop();
+      stop?.();
       timeline?.removeEventListener('pointerenter', warm);
     };
-  }, [isWaiting, store]);
+  }, [isWaiting, song, store]);
   if (!isOffered) return null;
   return (
     <button
