@@ -1,35 +1,25 @@
 /** The stage: the figure, its floor, lights and camera, and the loop that draws them. */
 import { Scene, WebGLRenderer } from 'three';
 import type { CameraView } from '../core/document';
-import { DEFAULT_LOOK, type FigureLook } from '../core/figure-look';
+import type { FigureLook } from '../core/figure-look';
 import type { FramePose, PoseTools } from '../core/types';
-import { JOINT_COUNT } from '../core/skeleton';
 import type { AvatarFigure } from './avatar';
-import { AvatarPlace } from './avatar-place';
-import { Figure } from './figure';
-import { loadFigure, type FigureAsset } from './figure-asset';
-import { createBackdrop, Floor } from './floor';
+import { Dancers } from './dancers';
 import { applyLook } from './filming-look';
 import { FollowCamera } from './follow-camera';
 import { FrameLoop } from './frame-loop';
 import { QualityGovernor } from './framing';
-import { Lights } from './lights';
 import { Onion, type Ghost } from './onion';
 import { Path } from './path';
 import type { PathPicture } from './path-picture';
-import { APART, aside, Beside } from './beside';
 import { BodyClicks } from './body-clicks';
 import { Posing, type JointHover } from './posing';
 import type { PoseListener } from './pose-edit';
-import { REST_HEIGHT } from './rest';
 import type { Stage } from './stage-type';
+import { Surroundings } from './surroundings';
 
 export type { Stage } from './stage-type';
 export type { JointHover } from './posing';
-export type { PoseListener, PosePhase } from './pose-edit';
-export { jointLabel } from './pose-edit';
-export type { Ghost } from './onion';
-export type { PathPicture } from './path-picture';
 
 /**
  * Builds the stage inside an element, whose size it follows.
@@ -45,18 +35,14 @@ class WebGLStage implements Stage {
   mode: 'dance' | 'pose' = 'dance';
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
-  private readonly floor = new Floor();
-  private readonly backdrop = createBackdrop();
-  private readonly lights = new Lights(true);
+  private readonly surroundings = new Surroundings();
+  private readonly dancers: Dancers;
   private readonly view: FollowCamera;
   private readonly posing: Posing;
-  private readonly beside = new Beside();
   private readonly onion = new Onion();
   private readonly path = new Path();
   private readonly bodyClicks: BodyClicks;
-  private readonly place: AvatarPlace;
   private ghosts: readonly Ghost[] | null = null;
-  private look: Readonly<FigureLook> = DEFAULT_LOOK;
   private readonly calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
   private readonly governor = new QualityGovernor(Math.min(devicePixelRatio || 1, 2));
   private readonly loop = new FrameLoop(this.governor, {
@@ -65,44 +51,30 @@ class WebGLStage implements Stage {
     render: () => this.render(),
   });
   private readonly watchers: { disconnect(): void }[] = [];
-  private readonly last: { root: Float32Array; quaternions: Float32Array };
-  private figure: Figure | null = null;
-  private asset: FigureAsset | null = null;
   private wantsFollow = true;
-  private glow = 0;
   private dirty = true;
   private seen = true;
-  private disposed = false;
 
   constructor(private readonly container: HTMLElement) {
     this.renderer = createRenderer();
     this.canvas = this.renderer.domElement;
     Object.assign(this.canvas.style, { display: 'block', width: '100%', height: '100%', touchAction: 'none' });
     container.append(this.canvas);
-    this.last = { root: new Float32Array([0, REST_HEIGHT, 0]), quaternions: new Float32Array(JOINT_COUNT * 4) };
-    for (let joint = 0; joint < JOINT_COUNT; joint++) this.last.quaternions[joint * 4 + 3] = 1;
-
     this.view = new FollowCamera(this.canvas, this.calm);
+    this.dancers = new Dancers((object) => this.renderer.compileAsync(object, this.view.camera, this.scene));
     this.posing = new Posing({
       camera: this.view.camera,
       element: this.canvas,
       scene: this.scene,
-      figure: () => this.figure,
+      figure: () => this.dancers.figure,
       changed: () => (this.dirty = true),
       orbit: (on) => (this.view.controls.enabled = on),
       calm: this.calm,
     });
-    this.place = new AvatarPlace((object) => this.renderer.compileAsync(object, this.view.camera, this.scene));
-    this.bodyClicks = new BodyClicks(this.canvas, this.view.camera, () => (this.mode === 'dance' ? this.dancer : null));
-    this.scene.add(
-      this.backdrop,
-      this.floor.mesh,
-      this.lights.group,
-      this.onion.group,
-      this.path.group,
-      this.beside.group,
-      this.place.group,
+    this.bodyClicks = new BodyClicks(this.canvas, this.view.camera, () =>
+      this.mode === 'dance' ? this.dancers.lead : null,
     );
+    this.scene.add(this.surroundings.group, this.onion.group, this.path.group, this.dancers.group);
     this.canvas.addEventListener('dblclick', () => this.mode === 'dance' && this.frameFigure());
     this.canvas.addEventListener('webglcontextrestored', () => (this.dirty = true));
     this.watch();
@@ -121,13 +93,12 @@ class WebGLStage implements Stage {
   }
 
   show(pose: FramePose, seconds = 0): void {
-    this.last.root.set(pose.root);
-    this.last.quaternions.set(pose.quaternions);
+    this.dancers.keep(pose);
     if (this.mode === 'dance') this.draw(seconds);
   }
 
   setAvatar(avatar: AvatarFigure | null): void {
-    this.place.set(avatar, this.last, () => {
+    this.dancers.setAvatar(avatar, () => {
       this.makeRoom();
       if (this.mode === 'dance') this.draw();
       this.dirty = true;
@@ -135,17 +106,16 @@ class WebGLStage implements Stage {
   }
 
   showBeside(pose: FramePose | null): void {
-    const alone = this.beside.root === null;
-    if (!pose && alone) return;
-    this.beside.set(this.asset, pose);
-    if (!pose !== alone) this.view.spread(pose ? 2 * APART : 0);
+    const before = this.dancers.apart;
+    if (!pose && !before) return;
+    this.dancers.setBeside(pose);
+    const { apart } = this.dancers;
+    if (apart !== before) this.view.spread(apart);
     if (this.mode === 'dance') this.draw();
   }
 
   setLook(look: Readonly<FigureLook>): void {
-    this.look = look;
-    this.figure?.wear(look);
-    this.beside.wear(look);
+    this.dancers.wear(look);
     this.dirty = true;
   }
 
@@ -200,7 +170,7 @@ class WebGLStage implements Stage {
 
   setGhosts(ghosts: readonly Ghost[] | null): void {
     this.ghosts = ghosts;
-    if (this.asset) this.onion.set(this.asset, ghosts);
+    if (this.dancers.asset) this.onion.set(this.dancers.asset, ghosts);
     this.dirty = true;
   }
 
@@ -238,7 +208,7 @@ class WebGLStage implements Stage {
   }
 
   pulse(strength = 1): void {
-    if (!this.calm) this.glow = Math.max(this.glow, Math.min(strength, 1));
+    if (!this.calm) this.surroundings.pulse(strength);
   }
 
   stats(): { fps: number; drawCalls: number; pixelRatio: number } {
@@ -250,36 +220,22 @@ class WebGLStage implements Stage {
   }
 
   dispose(): void {
-    this.disposed = true;
     this.loop.stop();
     for (const watcher of this.watchers) watcher.disconnect();
     this.posing.dispose();
     this.onion.dispose();
-    this.place.dispose();
-    this.beside.dispose();
+    this.dancers.dispose();
     this.path.dispose();
     this.bodyClicks.dispose();
     this.view.dispose();
-    this.figure?.dispose();
-    this.floor.dispose();
-    this.lights.dispose();
-    this.backdrop.geometry.dispose();
+    this.surroundings.dispose();
     this.renderer.dispose();
     this.canvas.remove();
   }
 
   private async loadFigure(): Promise<void> {
-    const asset = await loadFigure();
-    if (this.disposed) return;
-    const figure = new Figure(asset);
-    figure.wear(this.look);
-    this.scene.add(figure.mesh);
-    figure.show(this.last);
     // Shaders are built beside the page's own work; nothing is drawn until they are there.
-    await this.renderer.compileAsync(this.scene, this.view.camera);
-    if (this.disposed) return figure.dispose();
-    this.figure = figure;
-    this.asset = asset;
+    if (!(await this.dancers.load(() => this.renderer.compileAsync(this.scene, this.view.camera)))) return;
     this.makeRoom();
     this.dirty = true;
     this.setGhosts(this.ghosts);
@@ -287,28 +243,15 @@ class WebGLStage implements Stage {
     else this.posing.refresh();
   }
 
-  /** Whom the dance is danced by: a character, or our figure. */
-  private get dancer(): AvatarFigure | Figure | null {
-    return this.place.avatar ?? this.figure;
-  }
-
-  /** Either our figure or a character is to be seen, and what is drawn around it has its size. Poses are edited on our figure. */
+  /** What is drawn around whoever is to be seen has its size. */
   private makeRoom(): void {
-    const avatar = this.mode === 'dance' ? this.place.avatar : null;
-    this.place.group.visible = avatar !== null;
-    if (this.figure) this.figure.mesh.visible = avatar === null;
-    for (const { group } of [this.onion, this.path]) group.scale.setScalar(avatar?.stride ?? 1);
-    for (const part of [this.view, this.lights, this.floor]) part.fit(avatar?.size ?? 1);
+    const { size, stride } = this.dancers.cast(this.mode === 'dance');
+    for (const { group } of [this.onion, this.path]) group.scale.setScalar(stride);
+    for (const part of [this.view, this.surroundings]) part.fit(size);
   }
 
   private draw(seconds = 0): void {
-    const stride = this.place.avatar?.stride ?? 1;
-    const [x, z] = [this.last.root[0] * stride, this.last.root[2] * stride];
-    const other = this.beside.root;
-    this.view.aim(other ? (x + other[0]) / 2 : x, other ? (z + other[1]) / 2 : z);
-    this.figure?.show(other ? aside(this.last, APART) : this.last);
-    this.place.group.position.x = other ? APART : 0;
-    this.place.avatar?.show(this.last, seconds);
+    this.view.aim(...this.dancers.dance(seconds));
     this.dirty = true;
   }
 
@@ -333,33 +276,29 @@ class WebGLStage implements Stage {
     this.path.resize(width, height, this.governor.ratio);
     this.view.resize(width, height);
     // Drawn at once: an emptied canvas must not flash.
-    if (this.figure) this.render();
+    if (this.dancers.figure) this.render();
   }
 
   /** Time goes by; true when there is something to draw, and somebody to see it. */
   private update(seconds: number): boolean {
     if (this.view.update(seconds)) this.dirty = true;
     if (this.posing.update(seconds)) this.dirty = true;
-    if (this.glow > 0) {
-      this.glow = this.glow < 0.01 ? 0 : this.glow * Math.exp(-seconds * 4.5);
-      this.floor.glow = this.glow;
-      this.dirty = true;
-    }
-    return this.dirty && this.seen && this.figure !== null;
+    if (this.surroundings.update(seconds)) this.dirty = true;
+    return this.dirty && this.seen && this.dancers.figure !== null;
   }
 
   private lowerQuality(): void {
-    if (this.figure) this.figure.detail = this.governor.detail;
+    const { figure } = this.dancers;
+    if (figure) figure.detail = this.governor.detail;
     this.resize();
   }
 
   private render(): void {
     this.dirty = false;
     const [x, z] = this.view.centre;
-    this.floor.follow(x, z);
-    this.lights.follow(x, z);
-    this.backdrop.position.copy(this.view.camera.position);
-    this.floor.shade((this.mode === 'dance' ? this.dancer! : this.figure!).pose.joints);
+    const { lead, figure } = this.dancers;
+    const shown = (this.mode === 'dance' ? lead : figure)!;
+    this.surroundings.arrange(x, z, this.view.camera, shown.pose.joints);
     this.renderer.render(this.scene, this.view.camera);
   }
 }
