@@ -19,13 +19,13 @@ const has = (program: string) => spawnSync(program, ['-version']).status === 0;
 const panel = (page: Page) => page.getByRole('dialog', { name: 'Save as a video' });
 const bar = (page: Page) => page.getByRole('progressbar', { name: 'Making the video' });
 
-/** The demo, standing still, with the part as the selected stretch and the panel open. */
-async function openPanel(page: Page): Promise<void> {
+/** The demo, standing still, with a part of it as the selected stretch and the panel open. */
+async function openPanel(page: Page, part = PART): Promise<void> {
   await open(page);
   await page.getByRole('button', { name: 'Pause' }).click();
   await page.evaluate(
     ([poses, times]) => window.posebeat.setKeyPoses(times.map((time, i) => ({ time, rotations: poses[i] }))),
-    [fourPoses(), [PART.start, PART.end]] as const,
+    [fourPoses(), [part.start, part.end]] as const,
   );
   await page.keyboard.press('Control+a');
   await page.keyboard.press('l');
@@ -190,10 +190,95 @@ async function looked(page: Page, call: string) {
   }, call);
 }
 
+/** A picture drawn in strips beside the same drawn at once: largest difference of 255 levels, and the share of pixels with more than one. */
+const inStrips = (page: Page, background: string) =>
+  page.evaluate(async (background) => {
+    const { postMessage } = Worker.prototype;
+    const pixels = async (rows: number, onProgress?: (done: number) => void) => {
+      Worker.prototype.postMessage = function (this: Worker, message: object, ...rest: never[]) {
+        postMessage.call(this, 'request' in message ? { ...message, rows } : message, ...rest);
+      };
+      const blob = await window.posebeat.exportPicture({ size: 180, background, onProgress });
+      Worker.prototype.postMessage = postMessage;
+      const image = await createImageBitmap(blob);
+      const brush = new OffscreenCanvas(image.width, image.height).getContext('2d')!;
+      brush.drawImage(image, 0, 0);
+      return brush.getImageData(0, 0, image.width, image.height).data;
+    };
+    const progress: number[] = [];
+    const strips = await pixels(34, (done) => progress.push(done));
+    const whole = await pixels(180);
+    const apart = whole.map((value, i) => Math.abs(value - strips[i]));
+    const differ = apart.reduce((count, value) => count + Number(value > 1), 0);
+    return {
+      bytes: [strips.length, whole.length],
+      most: apart.reduce((a, b) => Math.max(a, b)),
+      share: differ / apart.length,
+      progress,
+    };
+  }, background);
+
+/**
+ * What the browser itself finds in a GIF; and how far its first and its last picture are from the same moment as a still, and from the
+ * other's, levels of 255.
+ */
+const inGif = (page: Page, bytes: Buffer, start: number) =>
+  page.evaluate(
+    async ({ base64, start }) => {
+      const data = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+      const decoder = new ImageDecoder({ data, type: 'image/gif' });
+      await Promise.all([decoder.completed, decoder.tracks.ready]);
+      const { frameCount, repetitionCount } = decoder.tracks.selectedTrack!;
+      const brush = new OffscreenCanvas(96, 96).getContext('2d', { willReadFrequently: true })!;
+      const small = (image: CanvasImageSource) => {
+        brush.drawImage(image, 0, 0, 96, 96);
+        return brush.getImageData(0, 0, 96, 96).data;
+      };
+      const sizes = new Set<string>();
+      const delays = new Set<number>();
+      const pictures: Uint8ClampedArray[] = [];
+      for (let frameIndex = 0; frameIndex < frameCount; frameIndex++) {
+        const { image } = await decoder.decode({ frameIndex });
+        sizes.add(`${image.displayWidth} x ${image.displayHeight}`);
+        delays.add(image.duration! / 1000);
+        pictures.push(small(image));
+        image.close();
+      }
+      const stills: Uint8ClampedArray[] = [];
+      for (const frame of [0, frameCount - 1]) {
+        const options = { size: 360, aspect: '1:1', camera: 'follow', time: start + frame * 0.06 } as const;
+        stills.push(small(await createImageBitmap(await window.posebeat.exportPicture(options))));
+      }
+      const apart = (a: Uint8ClampedArray, b: Uint8ClampedArray) =>
+        a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+      return {
+        frameCount,
+        endless: repetitionCount === Infinity,
+        sizes: [...sizes],
+        delays: [...delays],
+        apart: [
+          [apart(pictures[0], stills[0]), apart(pictures[0], stills[1])],
+          [apart(pictures[frameCount - 1], stills[1]), apart(pictures[frameCount - 1], stills[0])],
+        ],
+      };
+    },
+    { base64: bytes.toString('base64'), start },
+  );
+
 test('pictures: the stage, transparent, in another style, and all key poses on a sheet', async ({ page }) => {
   const errors = collectErrors(page);
-  await openPanel(page);
+  const part = { start: 4.3, end: 4.6 };
+  await openPanel(page, part);
   await page.keyboard.press('Escape');
+  const stage = await inStrips(page, 'stage');
+  expect(stage.bytes).toEqual([320 * 180 * 4, 320 * 180 * 4]);
+  // The grain of soft shadows falls otherwise.
+  expect(stage.share).toBeLessThan(0.005);
+  const { progress } = stage;
+  expect(progress.length).toBeGreaterThan(6);
+  expect(progress).toEqual([...new Set(progress)].sort((a, b) => a - b));
+  expect(progress.at(-1)).toBe(1);
+
   const cutOut = `exportPicture({ size: 180, aspect: '9:16', background: 'none', camera: 'front' })`;
   const studio = await looked(page, cutOut);
   expect(studio).toMatchObject({ type: 'image/png', size: [180, 320], corner: 0 });
@@ -210,6 +295,8 @@ test('pictures: the stage, transparent, in another style, and all key poses on a
   const neon = await looked(page, cutOut);
   expect(Math.abs(neon.drawn - studio.drawn)).toBeLessThan(0.02);
   expect(neon.light).toBeLessThan(studio.light * 0.8);
+  // In this style nothing has shadows: all of it is the same, the edges too.
+  expect((await inStrips(page, '#00b140')).most).toBeLessThanOrEqual(1);
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(page.getByRole('radio', { name: 'Studio' })).toBeChecked();
 
@@ -234,8 +321,29 @@ test('pictures: the stage, transparent, in another style, and all key poses on a
 
   const loop = page.evaluate(() => window.posebeat.exportLoop({ signal: AbortSignal.timeout(300) }));
   expect(await rejection(loop)).toMatch(/abort|time/i);
+  const large = page.evaluate(() => {
+    const stop = new AbortController();
+    const onProgress = (done: number) => done > 0.1 && stop.abort(new Error(`Stopped at ${done < 0.3}`));
+    return window.posebeat.exportPicture({ size: 2160, onProgress, signal: stop.signal });
+  });
+  expect(await rejection(large)).toContain('Stopped at true');
   await page.evaluate(() => window.posebeat.setKeyPoses([]));
   await expect(sheet).toContainText('There are no key poses yet');
+
+  await page.keyboard.press('Escape');
+  await page.getByRole('button', { name: 'Save the project' }).click();
+  await page.getByRole('button', { name: /Share as a link/ }).click();
+  const [moving] = await Promise.all([
+    page.waitForEvent('download', { timeout: 120_000 }),
+    page.getByRole('button', { name: 'Save a moving preview' }).click(),
+  ]);
+  expect(moving.suggestedFilename()).toMatch(/\.gif$/);
+  const gif = await inGif(page, readFileSync(await moving.path()), part.start);
+  expect(gif).toMatchObject({ frameCount: 5, endless: true, sizes: ['480 x 480'], delays: [60] });
+  for (const [own, other] of gif.apart) {
+    expect(own).toBeLessThan(6);
+    expect(own).toBeLessThan(0.8 * other);
+  }
   expect(errors).toEqual([]);
 });
 

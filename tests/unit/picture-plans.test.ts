@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { loopPlan, LOOP_FPS } from '../../web/video/loop-plan';
+import { stripRows } from '../../web/video/strips';
 import { columnsOf, MOST_POSES, SHEET, sheetLayout } from '../../web/video/sheet-layout';
 
 const bars = (seconds: number, count: number) => {
@@ -30,6 +31,21 @@ describe('contact sheet', () => {
       const columns = columnsOf(count);
       expect(Math.ceil(count / columns) * columns - count).toBeLessThanOrEqual(Math.max(1, columns * 0.75));
     }
+  });
+});
+
+describe('strips of a still', () => {
+  it.each([
+    [320, 180, 1],
+    [1920, 1080, 8],
+    [3840, 2160, 32],
+    [1214, 2160, 11],
+    [7, 8_000_000, 214],
+  ])('%i x %i pixels come in %i strips of the same height, that of pairs of rows', (width, height, count) => {
+    const rows = stripRows(width, height);
+    expect(Math.ceil(height / rows)).toBe(count);
+    expect(rows % 2).toBe(0);
+    expect(rows * width).toBeLessThanOrEqual(2 ** 18 + 2 * width);
   });
 });
 

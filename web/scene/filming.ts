@@ -35,22 +35,25 @@ export class FilmSet {
   private constructor(
     private readonly renderer: WebGLRenderer,
     private readonly dancer: Figure | AvatarFigure,
-    aspect: number,
+    private readonly picture: { width: number; height: number },
     fieldOfView: number,
     onStage: boolean,
   ) {
-    this.camera = new PerspectiveCamera(fieldOfView, aspect, 0.05, 120);
+    this.camera = new PerspectiveCamera(fieldOfView, picture.width / picture.height, 0.05, 120);
+    // Once for a picture, however many strips it has.
+    renderer.shadowMap.autoUpdate = false;
     this.scene.add('mesh' in dancer ? dancer.mesh : dancer.object, this.lights.group);
     if (onStage) this.scene.add(this.floor.mesh, this.backdrop);
   }
 
   /**
    * Builds the set.
-   * @param canvas of the picture's size in pixels
+   * @param canvas of the picture's size in pixels, or of the size of its strips
    * @param background `stage`, `none`, or a colour as `#rrggbb`, which the picture has exactly
    * @param fieldOfView vertical, degrees
    * @param look of the figure
    * @param avatar dances in the figure's place
+   * @param whole the picture's height in pixels, where the canvas holds a strip of it
    * @throws Error when the browser has no WebGL 2 or the figure cannot be loaded
    */
   static async open(
@@ -59,13 +62,14 @@ export class FilmSet {
     fieldOfView: number,
     look: Readonly<FigureLook> = DEFAULT_LOOK,
     avatar?: AvatarSource,
+    whole = canvas.height,
   ): Promise<FilmSet> {
     const { width, height } = canvas;
     const renderer = createRenderer(canvas, background === 'none');
     renderer.setSize(width, height, false);
     const onStage = background === 'stage';
     const dancer = avatar ? await (await import('./avatar')).openAvatar(avatar) : await dressed(look);
-    const set = new FilmSet(renderer, dancer, width / height, fieldOfView, onStage);
+    const set = new FilmSet(renderer, dancer, { width, height: whole }, fieldOfView, onStage);
     for (const part of [set.lights, set.floor]) part.fit(set.dancerSize.size);
     if (background.startsWith('#')) set.scene.background = new Color(background);
     await renderer.compileAsync(set.scene, set.camera);
@@ -81,12 +85,13 @@ export class FilmSet {
    * Draws one picture into the canvas; it is there until the script yields.
    * @throws Error when the graphics card was taken away
    */
-  draw({ pose, time = NaN, position, target, centre, glow }: Take): void {
-    if (this.renderer.getContext().isContextLost()) {
-      throw new Error(
-        'The graphics card was needed elsewhere: close other 3D pages, choose a smaller size, try again.',
-      );
-    }
+  draw(take: Take): void {
+    this.arrange(take);
+    this.drawStrip(0);
+  }
+
+  /** Puts everything in its place for {@link drawStrip}. */
+  arrange({ pose, time = NaN, position, target, centre, glow }: Take): void {
     this.dancer.show(pose, time - this.before || 0);
     this.before = time;
     this.camera.position.fromArray(Array.from(position));
@@ -96,6 +101,23 @@ export class FilmSet {
     this.floor.shade(this.dancer.pose.joints);
     this.lights.follow(centre[0], centre[1]);
     this.backdrop.position.copy(this.camera.position);
+    this.renderer.shadowMap.needsUpdate = true;
+  }
+
+  /**
+   * Draws as many rows of the picture as the canvas has; they are there until the script yields.
+   * @param top row of the picture that is the canvas's first
+   * @throws Error when the graphics card was taken away
+   */
+  drawStrip(top: number): void {
+    if (this.renderer.getContext().isContextLost()) {
+      throw new Error(
+        'The graphics card was needed elsewhere: close other 3D pages, choose a smaller size, try again.',
+      );
+    }
+    // The camera sees all of the picture, whatever part is drawn: outlines a pixel wide stay as they are. Rows count from below here.
+    const { width, height } = this.picture;
+    this.renderer.setViewport(0, top + this.renderer.domElement.height - height, width, height);
     this.renderer.render(this.scene, this.camera);
   }
 

@@ -2,7 +2,7 @@
 import { framePose } from '../core/motion';
 import { poseToQuaternions } from '../core/rotation';
 import { standingRoot } from '../scene/body-points';
-import { FilmSet } from '../scene/filming';
+import { FilmSet, type Take } from '../scene/filming';
 import { headingOf } from '../scene/heading';
 import { PALETTE } from '../ui/palette';
 import { cameraPath, FIELD_OF_VIEW, type CameraPath } from './camera-path';
@@ -14,9 +14,12 @@ import type { PictureCall, SceneRequest, SheetRequest } from './protocol';
 import { drawSheet } from './sheet';
 import { sheetLayout } from './sheet-layout';
 import { glowAt } from './shots';
+import { stripRows } from './strips';
 
 /** Pictures whose colours are looked at when an animation's are chosen. */
 const SAMPLES = 8;
+/** How far a still is when its figure and shaders are there, and when only its file is left to be written. */
+const [READY, DRAWN] = [0.1, 0.9];
 /** Angle between a key pose's own front and the camera, radians; how high the camera is, and what it looks at, metres. */
 const ASIDE = 0.5;
 const EYES = { height: 1.35, target: 0.98, away: 4.2 } as const;
@@ -28,7 +31,8 @@ const EYES = { height: 1.35, target: 0.98, away: 4.2 } as const;
  */
 export function drawPicture(call: PictureCall, progress: (done: number) => void, signal: AbortSignal): Promise<Blob> {
   if (call.type === 'sheet') return sheet(call.request, progress, signal);
-  return call.type === 'still' ? still(call.request) : loop(call.request, progress, signal);
+  if (call.type === 'loop') return loop(call.request, progress, signal);
+  return still(call.request, call.rows, progress, signal);
 }
 
 /** Lets a message to stop be heard. */
@@ -37,16 +41,22 @@ async function breathe(signal: AbortSignal): Promise<void> {
   signal.throwIfAborted();
 }
 
-function take(set: FilmSet, request: SceneRequest, path: CameraPath, frame: number): void {
+function brushOf(canvas: OffscreenCanvas, options?: CanvasRenderingContext2DSettings) {
+  const brush = canvas.getContext('2d', options);
+  if (!brush) throw new Error('This browser cannot draw the picture: close other tabs and try again.');
+  return brush;
+}
+
+function takeOf(request: SceneRequest, path: CameraPath, frame: number): Take {
   const time = frameTime(request.plan, frame);
-  set.draw({
+  return {
     pose: framePose(request.motion, time),
     time,
     position: path.position.subarray(frame * 3, frame * 3 + 3),
     target: path.target.subarray(frame * 3, frame * 3 + 3),
     centre: path.centre.subarray(frame * 2, frame * 2 + 2),
     glow: glowAt(time, request.grid),
-  });
+  };
 }
 
 function pathOf({ motion, plan, width, height, camera, grid, view }: SceneRequest, set: FilmSet): CameraPath {
@@ -54,19 +64,40 @@ function pathOf({ motion, plan, width, height, camera, grid, view }: SceneReques
   return fitPath(path, set.dancerSize, camera === 'stage' ? view : null);
 }
 
-function setOf({ background, look, avatar }: SceneRequest, canvas: OffscreenCanvas): Promise<FilmSet> {
-  return FilmSet.open(canvas, background, FIELD_OF_VIEW, look, avatar);
+function setOf({ background, look, avatar, height }: SceneRequest, canvas: OffscreenCanvas): Promise<FilmSet> {
+  return FilmSet.open(canvas, background, FIELD_OF_VIEW, look, avatar, height);
 }
 
-async function still(request: SceneRequest): Promise<Blob> {
-  const canvas = new OffscreenCanvas(request.width, request.height);
+/** In strips: without a graphics card a whole one can take long, and would take much memory with either. */
+async function still(
+  request: SceneRequest,
+  rows = stripRows(request.width, request.height),
+  progress: (done: number) => void,
+  signal: AbortSignal,
+): Promise<Blob> {
+  const { width, height, background } = request;
+  const canvas = new OffscreenCanvas(width, rows);
+  const page = new OffscreenCanvas(width, height);
+  // Where it is read, each strip is waited for: progress is what has been drawn, not what was asked for.
+  const brush = brushOf(page, { alpha: background === 'none', willReadFrequently: true });
   const set = await setOf(request, canvas);
   try {
-    take(set, request, pathOf(request, set), 0);
-    return await canvas.convertToBlob({ type: 'image/png' });
+    progress(READY);
+    await breathe(signal);
+    set.arrange(takeOf(request, pathOf(request, set), 0));
+    for (let top = 0; top < height; top += rows) {
+      set.drawStrip(top);
+      brush.drawImage(canvas, 0, top);
+      progress(READY + (DRAWN - READY) * Math.min(1, (top + rows) / height));
+      await breathe(signal);
+    }
   } finally {
     set.dispose();
   }
+  const blob = await page.convertToBlob({ type: 'image/png' });
+  await breathe(signal);
+  progress(1);
+  return blob;
 }
 
 async function sheet(request: SheetRequest, progress: (done: number) => void, signal: AbortSignal): Promise<Blob> {
@@ -75,8 +106,7 @@ async function sheet(request: SheetRequest, progress: (done: number) => void, si
   const edge = Math.max(1, Math.round(layout.figure * scale));
   const canvas = new OffscreenCanvas(edge, edge);
   const page = new OffscreenCanvas(Math.round(layout.width * scale), Math.round(layout.height * scale));
-  const brush = page.getContext('2d');
-  if (!brush) throw new Error('This browser cannot draw the picture: close other tabs and try again.');
+  const brush = brushOf(page);
   brush.scale(scale, scale);
   const set = await FilmSet.open(canvas, 'none', FIELD_OF_VIEW, request.look, request.avatar);
   const { size } = set.dancerSize;
@@ -107,20 +137,20 @@ async function loop(request: SceneRequest, progress: (done: number) => void, sig
   const { plan, width, height } = request;
   const canvas = new OffscreenCanvas(width, height);
   const flat = new OffscreenCanvas(width, height);
-  const brush = flat.getContext('2d', { willReadFrequently: true });
-  if (!brush) throw new Error('This browser cannot draw the picture: close other tabs and try again.');
+  const brush = brushOf(flat, { willReadFrequently: true });
   const set = await setOf(request, canvas);
   try {
     const path = pathOf(request, set);
     const pixels = (frame: number) => {
-      take(set, request, path, frame);
+      set.draw(takeOf(request, path, frame));
       brush.drawImage(canvas, 0, 0);
       return brush.getImageData(0, 0, width, height).data;
     };
     const palette = new GifPalette();
-    for (let i = 0; i < SAMPLES; i++) {
-      palette.count(pixels(Math.floor((i * plan.frames) / SAMPLES)));
-      progress((0.15 * i) / SAMPLES);
+    const samples = Math.min(SAMPLES, plan.frames);
+    for (let i = 0; i < samples; i++) {
+      palette.count(pixels(Math.floor((i * plan.frames) / samples)));
+      progress((0.15 * (i + 1)) / samples);
       await breathe(signal);
     }
     palette.choose(GIF_COLOURS);

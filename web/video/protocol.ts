@@ -72,7 +72,8 @@ export interface SheetRequest {
 
 /** Pictures that are drawn beside the page. */
 export type PictureCall =
-  | { type: 'still'; request: SceneRequest }
+  /** `rows` are drawn at once; without it as many as come quickly. */
+  | { type: 'still'; request: SceneRequest; rows?: number }
   | { type: 'sheet'; request: SheetRequest }
   /** The frames of the plan as an animation that goes round and round. */
   | { type: 'loop'; request: SceneRequest };
