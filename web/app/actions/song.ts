@@ -1,34 +1,26 @@
 /** From a file to a song that can be danced to. */
-import { createDocument, type ProjectDocument, type SongReference } from '../../core/document';
+import type { SongReference } from '../../core/document';
 import { seedMotion } from '../../core/seed';
 import type { BeatGrid, Features } from '../../core/types';
 import { isAbort, messageOf, type Context } from '../context';
-import { hashBytes, isHashOf } from '../hash';
+import { hashBytes } from '../hash';
 import { measureSince } from '../marks';
-import type { Song } from '../state';
+import type { Dance, Song } from '../state';
 import { previewDance } from '../preview';
 import type { DanceActions } from './dance';
-import { fetchSong, SHELF_SIZE, songBytes } from './song-bytes';
-import { offerFormer, offerSong, onSong } from './song-offers';
+import { fetchSong, songBytes } from './song-bytes';
+import { songProjects, type FormerProject, type SongEntry } from './song-projects';
+import { songShelf } from './song-shelf';
 
-/** A song and the dance that goes with it, kept for undo across songs. */
-interface Shelf {
-  song: Song;
-  dance: Context['state']['dance']['value'];
+/** What was there before a song came in. */
+interface Before extends FormerProject {
+  song: Song | null;
+  dance: Dance | null;
 }
 
 /** How a song comes in. */
-export interface OpenOptions {
-  name: string;
+export interface OpenOptions extends SongEntry {
   url?: string;
-  /** Play it and make a dance by itself: what a drop does and the automation API does not. */
-  start: boolean;
-  /** A document that this song belongs to; otherwise the song begins a new one, unless it is the same song. */
-  document?: ProjectDocument;
-  /** The document is what the page opens with: nothing before it can be brought back. */
-  restore?: boolean;
-  /** Leave the document and its history alone: undo brought us here. */
-  keepHistory?: boolean;
 }
 
 /** Actions on songs. */
@@ -36,20 +28,12 @@ export function songActions(context: Context, dance: DanceActions) {
   const { state, services, history } = context;
   const { player } = services;
   const bytesOf = songBytes(context);
-  const shelf = new Map<string, Shelf>();
+  const shelf = songShelf(state);
+  const projects = songProjects(context, follow);
   let job: AbortController | null = null;
-  /** A project whose song is not here yet. */
-  let waiting: ProjectDocument | null = null;
   let fetchMissing: (wanted: SongReference) => Promise<boolean> = () => Promise.resolve(false);
-  const keepOnShelf = () => {
-    const song = state.song.value;
-    if (!song?.complete) return;
-    shelf.delete(song.reference.hash);
-    shelf.set(song.reference.hash, { song, dance: state.dance.value });
-    for (const hash of [...shelf.keys()].slice(0, -SHELF_SIZE)) shelf.delete(hash);
-  };
 
-  const show = (song: Song, shown: Shelf['dance']) => {
+  const show = (song: Song, shown: Dance | null) => {
     dance.cancel();
     player.load(song.reference.duration, song.buffer);
     state.song.value = song;
@@ -85,21 +69,15 @@ export function songActions(context: Context, dance: DanceActions) {
     return new Error(`“${name}” could not be used. ${messageOf(error)}`);
   };
 
-  const offerOther = (name: string, project: ProjectDocument) =>
-    offerSong(context, project, name, () => {
-      if (waiting === project) waiting = null;
-    });
-
   async function open(file: Blob, options: OpenOptions): Promise<Song> {
     job?.abort(new DOMException('Another song was opened.', 'AbortError'));
     const own = (job = new AbortController());
     const { signal } = own;
     const opened = performance.now();
-    const before = {
+    const before: Before = {
       song: state.song.value,
       dance: state.dance.value,
       document: history.present,
-      /** There is work of the visitor's own, not only the demo. */
       touched: !state.song.value?.demo || history.undoLabel !== null,
     };
     let shown = false;
@@ -109,7 +87,7 @@ export function songActions(context: Context, dance: DanceActions) {
       if (file.size === 0) throw new Error('The file is empty: choose another one.');
       const bytes = await file.arrayBuffer();
       const hash = await hashBytes(bytes);
-      const awaited = waiting?.song ? await isHashOf(waiting.song.hash, bytes) : false;
+      const awaited = await projects.isAwaited(bytes);
       signal.throwIfAborted();
       state.songJob.value = { name: options.name, stage: 'decoding', fraction: 0 };
       const decoding = performance.now();
@@ -128,7 +106,7 @@ export function songActions(context: Context, dance: DanceActions) {
         demo: false,
       };
       const same = before.document.song?.hash === hash;
-      keepOnShelf();
+      shelf.keep();
       show(fresh, same ? before.dance : null);
       shown = true;
       // Before the analysis, not after it: the page may be left at any time.
@@ -140,22 +118,7 @@ export function songActions(context: Context, dance: DanceActions) {
       const begin = () => {
         if (started) return;
         started = true;
-        const given = options.document ?? (awaited ? waiting : null);
-        if (awaited) waiting = null;
-        if (!options.keepHistory) {
-          const former = before.document;
-          if (given) {
-            const next = onSong(given, reference);
-            if (options.restore) history.reset(next);
-            else history.push(next, 'Open project');
-          } else if (!same) {
-            // The view stays as the visitor turned it.
-            history.push({ ...createDocument(reference, former.dials), camera: former.camera }, 'New song');
-          }
-          if (options.start && !given && waiting) offerOther(options.name, waiting);
-          else if (options.start && !given && !same && before.touched)
-            offerFormer(context, former, `“${options.name}” begins a new project.`, follow);
-        }
+        projects.settle(reference, before, awaited, options);
         context.sync();
         if (!options.start) return;
         measureSince('first-dance', opened);
@@ -203,7 +166,7 @@ export function songActions(context: Context, dance: DanceActions) {
     }
   }
 
-  function rollBack(before: { song: Song | null; dance: Shelf['dance']; document: ProjectDocument }): void {
+  function rollBack(before: Before): void {
     if (before.song) show(before.song, before.dance);
     if (history.present !== before.document) {
       if (history.undoLabel === 'New song' || history.undoLabel === 'Open project') history.abandon();
@@ -226,7 +189,7 @@ export function songActions(context: Context, dance: DanceActions) {
     const wanted = history.present.song;
     if (state.songJob.value || !wanted || wanted.hash === state.song.value?.reference.hash) return;
     const kept = shelf.get(wanted.hash);
-    keepOnShelf();
+    shelf.keep();
     if (kept) {
       show(kept.song, kept.dance);
       return;
@@ -282,10 +245,7 @@ export function songActions(context: Context, dance: DanceActions) {
       fetchMissing = fetch;
     },
 
-    /** Opens this project as soon as its song is dropped; null = no longer. */
-    awaitSong(document: ProjectDocument | null): void {
-      waiting = document;
-    },
+    awaitSong: projects.awaitSong,
 
     /** The bytes of the song at hand as its file had them, or null when they are gone. */
     songFile: bytesOf.songFile,
