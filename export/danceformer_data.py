@@ -220,11 +220,14 @@ class KeySampler:
 
     margin = 6
 
-    def __init__(self, dances: list[Dance], rows: int, beats: int, seed: int, style_dropout: float = 0.4, music_dropout: float = 0.15) -> None:
+    def __init__(
+        self, dances: list[Dance], rows: int, beats: int, seed: int, style_dropout: float = 0.4, music_dropout: float = 0.15, aist: float = 2.0
+    ) -> None:
+        """`aist`: how much oftener AIST++ is taken than its length says, beside other dances with music (1) and those without (0.5)."""
         self.rows, self.beats = rows, beats
         self.style_dropout, self.music_dropout = style_dropout, music_dropout
         self.dances = [dance for dance in dances if dance.clip.frames > 60]
-        weight = [dance.clip.frames * (2.0 if dance.clip.source == "aist" else 1.0 if dance.has_music else 0.5) for dance in self.dances]
+        weight = [dance.clip.frames * (aist if dance.clip.source == "aist" else 1.0 if dance.has_music else 0.5) for dance in self.dances]
         self.weights = torch.tensor(weight)
         self.rng = torch.Generator().manual_seed(seed)
 

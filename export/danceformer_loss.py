@@ -14,11 +14,11 @@ from frame_net import MOMENTS, FrameNet
 from rotation import quaternion_to_matrix, six_d_to_matrix
 from skeleton import forward_kinematics
 from spec import JOINT_COUNT, ROTATION_SIZE
-from suggest import BEAT_SIZE, CODES, STEP, Suggester, facing, steps, without_heading
+from suggest import BEAT_SIZE, CODES, STEP, Suggester, facing, part_joints, steps, without_heading
 
 # Metres that a step's numbers count as beside the mean joint distance: turn (sine, cosine), height, side, forward.
 STEP_METRES = torch.tensor([0.3, 0.3, 1.0, 0.5, 0.5])
-CODE_SPREAD = 0.06  # metres: codes this far from a pose share its probability
+CODE_SPREADS = {1: 0.06, 2: 0.04}  # metres, by the parts that have codes: codes this far from a pose share its probability
 
 
 @dataclass
@@ -43,10 +43,16 @@ def _mean(values: Tensor, mask: Tensor) -> Tensor:
     return (values * mask).sum() / mask.sum().clamp(min=1)
 
 
-def code_vectors(vectors: Tensor, step: Tensor) -> Tensor:
-    """What codes are compared by: joints as the body sees them [..., 69] and the step [..., 5] -> [..., 74]; distances are metres
-    (root of the mean square over the joints)."""
-    return torch.cat([vectors / (vectors.shape[-1] // 3) ** 0.5, step * STEP_METRES.to(step)], -1)
+def code_vectors(vectors: Tensor, step: Tensor, parts: int = 1) -> list[Tensor]:
+    """What the codes of each part are compared by: its joints as the body sees them (of [..., 69], the pelvis left out), and for the
+    first part the step [..., 5]; distances are metres (root of the mean square over the joints)."""
+    joints = vectors.unflatten(-1, (JOINT_COUNT - 1, 3))
+    found = []
+    for part, members in enumerate(part_joints(parts)):
+        own = joints[..., [joint - 1 for joint in members if joint > 0], :]
+        own = own.flatten(-2) / own.shape[-2] ** 0.5
+        found.append(torch.cat([own, step * STEP_METRES.to(step)], -1) if part == 0 else own)
+    return found
 
 
 @dataclass
@@ -62,10 +68,10 @@ class KeyTargets:
     ahead: Tensor  # [B, N, 144] heading-free pose fixed ahead
     relative: Tensor  # [B, N, 2]
     beats: Tensor  # [B, N]
-    codes: Tensor  # [B, N, 74]
+    codes: list[Tensor]  # of each part [B, N, ...]: code_vectors
 
 
-def key_targets(rows: KeyRows, hidden: Tensor | None = None) -> KeyTargets:
+def key_targets(rows: KeyRows, hidden: Tensor | None = None, parts: int = 1) -> KeyTargets:
     """`hidden` [B, N] 1 where a pose is kept from the history (as if it were missing)."""
     batch, count = rows.valid.shape
     poses = torch.cat([absent_poses(batch, 2), torch.where(rows.valid[..., None] > 0, rows.poses, absent_poses(batch, count))], 1)
@@ -96,7 +102,7 @@ def key_targets(rows: KeyRows, hidden: Tensor | None = None) -> KeyTargets:
         ahead=without_heading(ahead, ahead_sine, ahead_cosine),
         relative=relative,
         beats=beats,
-        codes=code_vectors(rows.vectors, step[:, 1:]),
+        codes=code_vectors(rows.vectors, step[:, 1:], parts),
     )
 
 
@@ -108,14 +114,19 @@ def heading_free_joints(six_d: Tensor) -> Tensor:
 class KeyLoss:
     """Stage 1: cross-entropy of the codes, and reconstruction of the pose and the step from a code near the real pose."""
 
-    def __init__(self, config: LossConfig, centres: Tensor) -> None:
-        self.config, self.centres = config, centres  # [K, 74]
+    def __init__(self, config: LossConfig, centres: list[Tensor]) -> None:
+        """`centres` of each part [K / parts, ...]: code_vectors of its codes."""
+        self.config, self.centres = config, centres
 
-    def __call__(self, model: Suggester, rows: KeyRows, rng: torch.Generator | None, noise: float = 0.0) -> tuple[Tensor, dict[str, float], dict]:
+    def __call__(
+        self, model: Suggester, rows: KeyRows, rng: torch.Generator | None, noise: float = 0.0, hide: float = 0.08
+    ) -> tuple[Tensor, dict[str, float], dict]:
+        """`noise` on the poses before, `hide`: share of them that is kept from the network; both only in training, with an `rng`."""
         hidden = None
         if rng is not None:
-            hidden = (torch.rand(rows.valid.shape, generator=rng) < 0.08).float()
-        targets = key_targets(rows, hidden)
+            hidden = (torch.rand(rows.valid.shape, generator=rng) < hide).float()
+        parts = len(self.centres)
+        targets = key_targets(rows, hidden, parts)
         rotations = targets.rotations
         if noise and rng is not None:  # the history is the network's own work when it is used
             rotations = rotations + noise * torch.randn(rotations.shape, generator=rng)
@@ -125,14 +136,16 @@ class KeyLoss:
         mask = rows.valid
         terms: dict[str, Tensor] = {}
         if model.config.head == "codes":
-            distance = torch.cdist(targets.codes, self.centres)
-            likely = torch.softmax(-(distance**2) / (2 * CODE_SPREAD**2), -1)
-            logits = model.scores(x)
-            terms["codes"] = _mean(-(likely * torch.log_softmax(logits, -1)).sum(-1), mask)
-            if rng is None:
-                code = distance.argmin(-1)
-            else:
-                code = torch.multinomial(likely.flatten(0, 1), 1, generator=rng).view(mask.shape)
+            codes: list[Tensor] = []
+            terms["codes"] = torch.zeros(())
+            for part, (vectors, centres) in enumerate(zip(targets.codes, self.centres, strict=True)):
+                distance = torch.cdist(vectors, centres)
+                likely = torch.softmax(-(distance**2) / (2 * CODE_SPREADS[parts] ** 2), -1)
+                logits = model.scores(x, codes)
+                terms["codes"] = terms["codes"] + _mean(-(likely * torch.log_softmax(logits, -1)).sum(-1), mask)
+                nearest = distance.argmin(-1) if rng is None else torch.multinomial(likely.flatten(0, 1), 1, generator=rng).view(mask.shape)
+                codes.append(nearest + part * len(centres))
+            code = torch.stack(codes, -1)
         else:
             code = torch.randn(*mask.shape, CODES, generator=rng)
         columns, step = model.finish(x, code)

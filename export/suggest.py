@@ -3,9 +3,10 @@
 Letters: J joints, B batch, N beats in a row, K codes, D width. A pose is [147]: 24 x 6D and the root in metres.
 
 What differs from the paper, and why:
-- The paper regresses the pose with a GAN against averaging. Here the decoder first chooses one of K pose codes (centres of the key
-  poses of the training set, with turn and step) and then regresses what the pose differs by from it. The choice is sampled: with a few
-  thousand beats of data a regression stands still and a GAN falls over; see the ablation in results/danceformer.md.
+- The paper regresses the pose with a GAN against averaging. Here the decoder first chooses pose codes (centres of the key poses of the
+  training set), one for the legs with turn and step, then one for what is above them, and then regresses what the pose differs by from
+  the two. The choice is sampled: with a few thousand beats of data a regression stands still and a GAN falls over; see the ablation in
+  results/danceformer.md. K codes in two halves name K K / 4 poses, so that a code is nearer to the pose than one of K for all of it.
 - A step sees the last 16 poses only. Attention reaches 8 beats in each of 2 causal layers, so this is not a shortcut: it gives what
   decoding with cached keys and values of the whole song would.
 - A pose that the user has fixed ahead, and the beats to it, are given behind the decoder, so they need no place in the history.
@@ -22,7 +23,7 @@ from torch import Tensor, nn
 from dantrans import FAR, FROM_TREE, TREE_ORDER, DanTransConfig, DecoderLayer, JointLinear, Reach, WaveEncoder, body_module
 from inbetween import level_heading
 from rotation import gram_schmidt, unit
-from spec import JOINT_COUNT, MOTION_SIZE, ROTATION_SIZE, SPEC
+from spec import JOINT_COUNT, JOINTS, MOTION_SIZE, ROTATION_SIZE, SPEC
 
 PART = SPEC["danceformer"]
 PAST_POSES: int = PART["suggest"]["pastPoses"]
@@ -48,6 +49,7 @@ class SuggestConfig:
     net: DanTransConfig = field(default_factory=DanTransConfig)
     head: str = "codes"  # codes | regress (the paper's, for the ablation: `noise` is then its random input)
     code_width: int = 64
+    parts: int = 1  # bodies that have codes of their own: 1 the whole, 2 legs and what is above them
 
     def __post_init__(self) -> None:
         if isinstance(self.net, dict):
@@ -55,6 +57,18 @@ class SuggestConfig:
 
     def as_dict(self) -> dict:
         return asdict(self)
+
+
+LEGS = [JOINTS.index(side + name) for name in ("hip", "knee", "ankle", "foot") for side in ("left_", "right_")]
+
+
+def part_joints(parts: int) -> list[list[int]]:
+    """Joints of each part of the body, in the order in which their codes are chosen; the pelvis goes with the first."""
+    if parts == 1:
+        return [list(range(JOINT_COUNT))]
+    if parts == 2:
+        return [[0, *LEGS], [joint for joint in range(1, JOINT_COUNT) if joint not in LEGS]]
+    raise ValueError(f"codes for {parts} parts of the body: choose 1 or 2")
 
 
 def turn_columns(columns: Tensor, sine: Tensor, cosine: Tensor) -> Tensor:
@@ -130,6 +144,7 @@ class Suggester(nn.Module):
         self.finish_body = body_module(net, 1)
         self.turns = JointLinear(JOINT_COUNT, width, 6)
         self.step = nn.Linear(flat, STEP)
+        # Rotations outside a code's own part, and the steps of all but the first part's codes, are zero.
         self.register_buffer("code_rotations", torch.zeros(CODES, ROTATION_SIZE))
         self.register_buffer("code_steps", torch.zeros(CODES, STEP))
         for last in (self.turns, self.step):
@@ -184,20 +199,27 @@ class Suggester(nn.Module):
         x = x + self.enter_next(tokens.flatten(1, 2)).unflatten(1, (-1, count)) + self.enter_style(style)[None, :, None]
         return self.aimed(x + self.aim(x.flatten(1, 2)).unflatten(1, (-1, count)))
 
-    def scores(self, x: Tensor) -> Tensor:
-        """[J, B, N, D] -> logits of the codes [B, N, K]."""
-        return self.logits(x.permute(1, 2, 0, 3).flatten(2))
+    def told(self, code: Tensor) -> Tensor:
+        """Codes of the first parts [B, N, G] (or, for the regressing head, noise [B, N, K]) as features [J, B, N, D]."""
+        known = self.code(code).sum(-2) if self.config.head == "codes" else self.code(code)
+        return self.enter_code(known).unflatten(-1, (JOINT_COUNT, -1)).permute(2, 0, 1, 3)
+
+    def scores(self, x: Tensor, codes: list[Tensor]) -> Tensor:
+        """Features [J, B, N, D] and the codes [B, N] of the parts before, none for the first -> logits [B, N, K / parts] of the next part's."""
+        part, size = len(codes), CODES // self.config.parts
+        if codes:
+            x = x + self.told(torch.stack(codes, -1))
+        return self.logits(x.permute(1, 2, 0, 3).flatten(2))[..., part * size : (part + 1) * size]
 
     def finish(self, x: Tensor, code: Tensor) -> tuple[Tensor, Tensor]:
-        """Features and the code [B, N] (or, for the regressing head, noise [B, N, K]) -> rotations [B, N, J, 6] orthonormal, step [B, N, 5]."""
+        """Features and the codes [B, N, parts] (or, for the regressing head, noise [B, N, K]) -> rotations [B, N, J, 6] orthonormal, step [B, N, 5]."""
         count = x.shape[2]
-        told = self.enter_code(self.code(code)).unflatten(-1, (JOINT_COUNT, -1)).permute(2, 0, 1, 3)
-        x = x + told
+        x = x + self.told(code)
         x = self.finished(x + self.finish_body(x.flatten(1, 2)).unflatten(1, (-1, count)))
         turns = self.turns(x.flatten(1, 2)).unflatten(1, (-1, count))[FROM_TREE].permute(1, 2, 0, 3)
         step = self.step(x.permute(1, 2, 0, 3).flatten(2))
         if self.config.head == "codes":
-            base, base_step = nn.functional.embedding(code, self.code_rotations), nn.functional.embedding(code, self.code_steps)
+            base, base_step = (nn.functional.embedding(code, table).sum(-2) for table in (self.code_rotations, self.code_steps))
         else:
             base, base_step = self.code_rotations[:1], self.code_steps[:1]  # the mean pose
         raw = base.unflatten(-1, (JOINT_COUNT, 6)) + turns
@@ -217,7 +239,7 @@ class Suggester(nn.Module):
         temperature: Tensor,
         noise: Tensor,
     ) -> tuple[Tensor, Tensor]:
-        """One step: see INPUTS; poses [B, 16, 147] in the world -> (pose [B, 147] in the world, code [B])."""
+        """One step: see INPUTS; poses [B, 16, 147] in the world -> (pose [B, 147] in the world, code [B] of the last part)."""
         mask = pose_mask[:, :, None]
         stand = torch.zeros(MOTION_SIZE, device=poses.device)
         stand[0:ROTATION_SIZE:6] = 1
@@ -238,10 +260,13 @@ class Suggester(nn.Module):
         last, ahead = rotations[:, -1:], without_heading(target, ahead_sine, ahead_cosine)[:, None]
         x = self.aim_at(x, last, ahead, relative[:, None], next_beats[:, None], style)
         if self.config.head == "codes":
-            weighed = self.scores(x)[:, 0] / temperature[:, None] + noise
-            code = weighed.argmax(-1)
-            columns, moved = self.finish(x, code[:, None])
-            code = code.to(poses)
+            size = CODES // self.config.parts
+            codes: list[Tensor] = []
+            for part in range(self.config.parts):
+                weighed = self.scores(x, codes)[:, 0] / temperature[:, None] + noise[:, part * size : (part + 1) * size]
+                codes.append(weighed.argmax(-1)[:, None] + part * size)
+            columns, moved = self.finish(x, torch.stack(codes, -1))
+            code = codes[-1][:, 0].to(poses)
         else:
             columns, moved = self.finish(x, (noise * temperature[:, None])[:, None])
             code = temperature * 0

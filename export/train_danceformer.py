@@ -23,13 +23,13 @@ from torch import Tensor, nn
 
 from curve_net import CurveConfig, CurveNet
 from danceformer_data import Dance, IntervalSampler, KeySampler, load_dances, split_dances
-from danceformer_loss import CurveLoss, Discriminator, KeyLoss, LossConfig, code_vectors, discriminator_views, key_targets
+from danceformer_loss import CurveLoss, Discriminator, KeyLoss, LossConfig, discriminator_views, key_targets
 from dantrans import DanTransConfig
 from data import load_clips
 from frame_net import FrameNet
 from record import record_run
-from spec import spec_hash
-from suggest import CODES, SuggestConfig, Suggester
+from spec import JOINT_COUNT, ROTATION_SIZE, spec_hash
+from suggest import CODES, STEP, SuggestConfig, Suggester, part_joints
 from train_inbetween import load_inbetweener
 from training import cosine_rate, follow, parse_flags, save_whole
 
@@ -51,6 +51,9 @@ class Settings:
     noise: float = 0.03
     seed: int = 0
     every: int = 200
+    hide: float = 0.08  # share of the poses before that stage 1 does not see
+    aist: float = 2.0  # how much oftener AIST++ is taken than its length says (stage 1)
+    parts: int = 1  # bodies with codes of their own: 1 the whole, 2 legs and what is above them
     head: str = "codes"
     body: str = "kpm"
     attention: str = "learned"
@@ -64,35 +67,48 @@ class Settings:
     weights: str = ""  # checkpoint of this program that a new run starts from
 
 
-def find_codes(dances: list[Dance], rng: torch.Generator, rounds: int = 12) -> tuple[Tensor, Tensor, Tensor]:
-    """K-means over the key poses of training dances (both mirror forms) -> (compared vectors [K, 74], rotations [K, 144], steps [K, 5]) of
-    the real pose nearest to each centre."""
-    sampler = KeySampler(dances, 64, 24, 5)
-    vectors, rotations, steps_ = [], [], []
+def find_codes(dances: list[Dance], rng: torch.Generator, parts: int = 1, aist: float = 2.0, rounds: int = 12) -> tuple[list[Tensor], Tensor, Tensor]:
+    """K-means, part by part of the body, over the key poses of training dances (both mirror forms) -> (for each part the compared vectors
+    [K / parts, ...]; rotations [K, 144] and steps [K, 5] of the real poses nearest to the centres, zero outside the part)."""
+    sampler = KeySampler(dances, 64, 24, 5, aist=aist)
+    vectors: list[list[Tensor]] = [[] for _ in range(parts)]
+    rotations, steps_ = [], []
     for _ in range(14):
         rows = sampler.batch()
-        targets = key_targets(rows)
+        targets = key_targets(rows, parts=parts)
         keep = (targets.has_step > 0).flatten()
-        vectors.append(targets.codes.flatten(0, 1)[keep])
+        for part, compared in enumerate(targets.codes):
+            vectors[part].append(compared.flatten(0, 1)[keep])
         rotations.append(targets.target.flatten(0, 1)[keep])
         steps_.append(targets.target_step.flatten(0, 1)[keep])
-    points, rotation, step = torch.cat(vectors), torch.cat(rotations), torch.cat(steps_)
-    centres = points[torch.randperm(len(points), generator=rng)[:CODES]].clone()
-    for _ in range(rounds):
-        nearest = torch.cdist(points, centres).argmin(1)
-        sums = torch.zeros_like(centres).index_add_(0, nearest, points)
-        counts = torch.bincount(nearest, minlength=CODES)[:, None]
-        centres = torch.where(counts > 0, sums / counts.clamp(min=1), centres)
-    # A mean of poses is no pose: the real one nearest to it is.
-    medoid = torch.cdist(centres, points).argmin(1)
-    return points[medoid], rotation[medoid], step[medoid]
+    rotation, step = torch.cat(rotations), torch.cat(steps_)
+    size = CODES // parts
+    found, code_rotations, code_steps = [], torch.zeros(CODES, ROTATION_SIZE), torch.zeros(CODES, STEP)
+    for part, members in enumerate(part_joints(parts)):
+        points = torch.cat(vectors[part])
+        centres = points[torch.randperm(len(points), generator=rng)[:size]].clone()
+        for _ in range(rounds):
+            nearest = torch.cdist(points, centres).argmin(1)
+            sums = torch.zeros_like(centres).index_add_(0, nearest, points)
+            counts = torch.bincount(nearest, minlength=size)[:, None]
+            centres = torch.where(counts > 0, sums / counts.clamp(min=1), centres)
+        # A mean of poses is no pose: the real one nearest to it is.
+        medoid = torch.cdist(centres, points).argmin(1)
+        found.append(points[medoid])
+        own = torch.zeros(JOINT_COUNT, 6)
+        own[members] = 1
+        rows_ = slice(part * size, (part + 1) * size)
+        code_rotations[rows_] = rotation[medoid] * own.flatten()
+        if part == 0:
+            code_steps[rows_] = step[medoid]
+    return found, code_rotations, code_steps
 
 
 def build(settings: Settings) -> nn.Module:
     """The untrained network of the settings."""
     net = DanTransConfig(width=settings.width, layers=settings.layers, body=settings.body, attention=settings.attention, dropout=settings.dropout)
     if settings.stage == "suggest":
-        return Suggester(SuggestConfig(net=net, head=settings.head))
+        return Suggester(SuggestConfig(net=net, head=settings.head, parts=settings.parts))
     if settings.stage == "curves":
         if not settings.trunk:
             return (FrameNet if settings.frames else CurveNet)(CurveConfig(net=net))
@@ -116,7 +132,7 @@ def follow_buffers(averaged: nn.Module, model: nn.Module, share: float = 0.02) -
 class Trainer:
     """One run: model, discriminator, optimisers, sampler; `step` does one step."""
 
-    def __init__(self, settings: Settings, losses: LossConfig, training: list[Dance], held: list[Dance], codes: tuple[Tensor, Tensor, Tensor] | None = None) -> None:
+    def __init__(self, settings: Settings, losses: LossConfig, training: list[Dance], held: list[Dance], codes: tuple[list[Tensor], Tensor, Tensor] | None = None) -> None:
         """`codes`: those of `find_codes` on the same dances, where they are known already."""
         self.settings, self.losses = settings, losses
         torch.manual_seed(settings.seed)
@@ -124,8 +140,8 @@ class Trainer:
         self.rng = torch.Generator().manual_seed(settings.seed + 1)
         if settings.stage == "suggest":
             rows = settings.rows or 20
-            self.sampler = KeySampler(training, rows, settings.beats, settings.seed)
-            centres, rotations, steps_ = codes or find_codes(training, torch.Generator().manual_seed(settings.seed))
+            self.sampler = KeySampler(training, rows, settings.beats, settings.seed, aist=settings.aist)
+            centres, rotations, steps_ = codes or find_codes(training, torch.Generator().manual_seed(settings.seed), settings.parts, settings.aist)
             self.codes = (centres, rotations, steps_)
             if settings.head == "regress":
                 rotations, steps_ = rotations.mean(0, keepdim=True).expand(CODES, -1), steps_.mean(0, keepdim=True).expand(CODES, -1)
@@ -162,7 +178,7 @@ class Trainer:
 
     def loss(self, model: nn.Module, batch, train: bool) -> tuple[Tensor, dict[str, float], dict]:
         if self.settings.stage == "suggest":
-            return self.key_loss(model, batch, self.rng if train else None, self.settings.noise)
+            return self.key_loss(model, batch, self.rng if train else None, self.settings.noise, self.settings.hide)
         return self.curve_loss(model, batch)
 
     def step(self) -> dict[str, float]:

@@ -14,7 +14,7 @@ from conftest import make_clip
 from curve_net import CurveConfig, CurveNet, ground_height, small_quaternion
 from curves import Curves, sample
 from danceformer_data import Dance, IntervalSampler, KeySampler, bar_places, beat_music, deltas, interval_music, motion_to_channels
-from danceformer_loss import CurveLoss, KeyLoss, LossConfig, code_vectors, curves_of, key_targets
+from danceformer_loss import CurveLoss, KeyLoss, LossConfig, curves_of, key_targets
 from dance_metrics import pose_vectors
 from dantrans import FkIkBlock, JointFc, Reach, TREE_ORDER, DanTransConfig, fold_norms
 from export_danceformer import made_up_inputs, names_of, run, to_onnx
@@ -26,8 +26,8 @@ from rotation import axis_angle_to_matrix, matrix_to_quaternion, matrix_to_six_d
 from samples import synthetic_motion
 from skeleton import forward_kinematics, mirror_motion
 from spec import FPS, JOINT_COUNT, PARENTS, ROTATION_SIZE, TOE_HEIGHT, TOES, spec_hash
-from suggest import BEAT_SIZE, CODES, PAST_BEATS, PAST_POSES, STEP, SuggestConfig, Suggester, steps
-from train_danceformer import Settings, Trainer
+from suggest import BEAT_SIZE, CODES, PAST_BEATS, PAST_POSES, STEP, SuggestConfig, Suggester, part_joints, steps
+from train_danceformer import Settings, Trainer, find_codes
 
 MODELS = Path(__file__).resolve().parents[2] / "public" / "models"
 SMALL = DanTransConfig(width=8, music_width=16, dropout=0.0)
@@ -304,14 +304,44 @@ def test_key_rows_and_targets_fit():
     assert torch.equal(targets.beats > 0, rows.next_index >= 0)
 
 
-def test_losses_have_gradients_everywhere_that_matters():
+@pytest.mark.parametrize("parts", [1, 2])
+def test_codes_are_found_part_by_part(parts):
+    rng = torch.Generator().manual_seed(0)
+    centres, rotations, steps_ = find_codes([made_dance()], rng, parts, rounds=2)
+    assert [len(found) for found in centres] == [CODES // parts] * parts
+    members = part_joints(parts)
+    assert sorted(joint for part in members for joint in part) == list(range(24))
+    for part, own in enumerate(members):
+        mine = rotations.unflatten(1, (24, 6))[part * CODES // parts : (part + 1) * CODES // parts]
+        others = [joint for joint in range(24) if joint not in own]
+        # Columns of rotations inside the part, nothing outside it.
+        assert torch.allclose(mine[:, own, :3].norm(dim=-1), torch.ones(len(mine), len(own)), atol=1e-5)
+        assert not mine[:, others].any()
+    first = steps_[: CODES // parts]
+    assert torch.allclose(first[:, :2].norm(dim=-1), torch.ones(len(first)), atol=1e-5) and not steps_[CODES // parts :].any()
+    # One of each part makes a whole pose.
+    whole = rotations.unflatten(0, (parts, -1))[:, 0].sum(0).unflatten(0, (24, 6))
+    assert torch.allclose(whole[:, 3:].norm(dim=-1), torch.ones(24), atol=1e-5)
+
+
+def test_the_second_part_is_chosen_for_the_first():
+    torch.manual_seed(0)
+    model = Suggester(SuggestConfig(net=SMALL, code_width=8, parts=2)).eval()
+    x = torch.randn(24, 1, 1, 8)
+    legs = model.scores(x, [])
+    assert legs.shape == (1, 1, CODES // 2)
+    above = [model.scores(x, [torch.tensor([[code]])]) for code in (0, 1)]
+    assert above[0].shape == (1, 1, CODES // 2) and not torch.allclose(*above)
+
+
+@pytest.mark.parametrize("parts", [1, 2])
+def test_losses_have_gradients_everywhere_that_matters(parts):
     dance = made_dance()
     rows = KeySampler([dance], 4, 12, 0).batch()
-    model = Suggester(SuggestConfig(net=SMALL, code_width=8)).train()
-    centres = code_vectors(rows.vectors, torch.zeros(4, 12, STEP)).flatten(0, 1)
-    centres = centres.repeat(-(-CODES // len(centres)), 1)[:CODES]
-    model.code_steps[:, 1] = 1
-    model.code_rotations.copy_(rows.poses[0, :1, :ROTATION_SIZE].expand(CODES, -1))
+    model = Suggester(SuggestConfig(net=SMALL, code_width=8, parts=parts)).train()
+    centres, rotations, steps_ = find_codes([dance], torch.Generator().manual_seed(0), parts, rounds=1)
+    model.code_steps.copy_(steps_)
+    model.code_rotations.copy_(rotations)
     loss, terms, _ = KeyLoss(LossConfig(), centres)(model, rows, torch.Generator().manual_seed(0))
     loss.backward()
     assert terms.keys() == {"codes", "rotation", "position", "step"} and all(np.isfinite(v) for v in terms.values())
