@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import type { Dance, PoseDraft } from '../../web/app/state';
+import type { PoseDraft } from '../../web/app/pose-state';
+import type { Dance } from '../../web/app/state';
 import { chainPosition, jointChain } from '../../web/core/joint-path';
 import { emptyMotion, frameView } from '../../web/core/motion';
 import { poseToQuaternions, quaternionsToPose } from '../../web/core/rotation';

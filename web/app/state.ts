@@ -1,14 +1,11 @@
 /** Everything the page shows, as signals. Only the actions write them. */
 import { computed, signal } from '@preact/signals';
-import { DEFAULT_TOOLS } from '../core/default-tools';
 import { createDocument } from '../core/document';
 import spec from '../core/spec.json';
-import type { PoseClips } from '../core/formats/pose-sequence';
 import type { CurveDance, CurveTrack } from '../core/curves';
 import type { CurveEdit } from '../core/curves-edit';
 import type { ProjectDocument, SongReference, TimeRange } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
-import type { Limb } from '../core/pose-tools';
 import type { TradeOffPoint } from '../core/report-curves';
 import type {
   BeatGrid,
@@ -16,7 +13,6 @@ import type {
   KeyPose,
   LibraryPose,
   Motion,
-  PoseTools,
   SeedClip,
   Snap,
   Waveform,
@@ -28,6 +24,7 @@ import type { OwnPose } from './pose-store';
 import type { DanceReport } from './report';
 import type { VideoJob, VideoTab } from './actions/video';
 import { createAvatarState } from './avatar-state';
+import { createPoseState } from './pose-state';
 import { createSuggestState } from './suggester';
 
 /** The song at hand. Its parts arrive one after another: sound, waveform, first beats, everything. */
@@ -120,42 +117,6 @@ export interface NoticeAction {
   run(): void;
 }
 
-/** A copied pose, or a limb of one. */
-export interface PoseClip {
-  rotations: readonly number[];
-  /** The limb that was copied; null for the whole pose. */
-  limb: Limb | null;
-  name: string;
-}
-
-/** An animation file that a pose is being taken from. */
-export interface PoseImport extends PoseClips {
-  /** The file's name. */
-  file: string;
-  /** Which animation of the file. */
-  clip: number;
-  frame: number;
-}
-
-/** A blend that is being tried in the editor. */
-export interface PoseBlend {
-  /** Name of the other pose. */
-  name: string;
-  /** 0..1. */
-  amount: number;
-}
-
-/** The pose in the editor. */
-export interface PoseDraft {
-  rotations: number[];
-  /** The key pose being edited, or null for a new one. */
-  keyId: string | null;
-  name: string;
-  joint: number | null;
-  canUndo: boolean;
-  canRedo: boolean;
-}
-
 /** Taps on the beat so far. */
 export interface Tapping {
   /** Song times, seconds, in the order tapped. */
@@ -186,6 +147,7 @@ export function createState() {
   const frames = computed(() => Math.ceil(duration.value * spec.fps));
   return {
     ...createSuggestState(),
+    ...createPoseState(),
     ...createAvatarState(),
     document,
     undoLabel: signal<string | null>(null),
@@ -195,9 +157,6 @@ export function createState() {
     poses: signal<LibraryPose[]>([]),
     /** The visitor's own poses, newest first. */
     ownPoses: signal<OwnPose[]>([]),
-    poseImport: signal<PoseImport | null>(null),
-    /** Name of the animation file that is being read, or null. */
-    poseImportJob: signal<string | null>(null),
     seeds,
     model: signal<ModelInfo | null>(null),
     dance,
@@ -235,15 +194,6 @@ export function createState() {
     volume: signal(0.9),
     muted: signal(false),
     selection: signal<ReadonlySet<string>>(new Set()),
-    draft: signal<PoseDraft | null>(null),
-    poseTools: signal<PoseTools>(DEFAULT_TOOLS),
-    /** What was copied in the pose editor last. */
-    poseClip: signal<PoseClip | null>(null),
-    poseBlend: signal<PoseBlend | null>(null),
-    /** How wild random variations are, 0..1. */
-    variationAmount: signal(0.4),
-    /** A short word on what just happened to the pose, shown over the stage. */
-    poseWord: signal(''),
     /** Key poses and ranges go along when the beats are changed. */
     ripple: signal(true),
     /** Tap tempo under way, or null. */

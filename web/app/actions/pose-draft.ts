@@ -1,7 +1,7 @@
 /** The pose in the editor and its own undo, apart from the document's. Nothing of it is lost by leaving the editor. */
 import { History } from '../../core/history';
 import type { Context } from '../context';
-import type { PoseDraft } from '../state';
+import type { PoseDraft } from '../pose-state';
 
 /** Drafts whose steps are remembered after they were kept. */
 const REMEMBERED = 20;

@@ -1,6 +1,6 @@
 import { useComputed, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import type { PoseImport } from '../../app/state';
+import type { PoseImport } from '../../app/pose-state';
 import { poseOfFrame, suggestFrames } from '../../core/formats/pose-sequence';
 import { Icon } from '../Icon';
 import { useStore } from '../store-context';

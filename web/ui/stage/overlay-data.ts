@@ -1,6 +1,7 @@
 /** What the overlays of the stage show, worked out from the state: no graphics here. */
 import { lowerBound } from '../../app/snapping';
-import type { Dance, PoseDraft } from '../../app/state';
+import type { PoseDraft } from '../../app/pose-state';
+import type { Dance } from '../../app/state';
 import { danceThrough, neighbouringKeys, slerpThrough, type Stretch } from '../../core/joint-path';
 import { poseToQuaternions } from '../../core/rotation';
 import { spec } from '../../core/spec';
