@@ -3,7 +3,7 @@ import { checkKeyPoses, createDocument } from '../../web/core/document';
 import { parseDocument } from '../../web/core/document-read';
 import { setStrength, settleKeys, shiftKeys, toggleLock, editKeys } from '../../web/core/key-ops';
 import { withinLimits } from '../../web/core/joint-limits';
-import { axisAngleToQuaternion, poseToQuaternions, quaternionsToSixD } from '../../web/core/rotation';
+import { angleBetween, axisAngleToQuaternion, poseToQuaternions, quaternionsToSixD } from '../../web/core/rotation';
 import { jointIndex } from '../../web/core/skeleton';
 import { spec } from '../../web/core/spec';
 import { TIMBRE_SIZE } from '../../web/core/mfcc';
@@ -16,7 +16,7 @@ import {
   type StepRunner,
   type SuggestRequest,
 } from '../../web/core/suggest';
-import { FORBIDDEN, MOST_TRIES, VISIBLE_DISTANCE } from '../../web/core/suggest-moving';
+import { FASTEST_TURN, FORBIDDEN, MOST_TRIES, VISIBLE_DISTANCE } from '../../web/core/suggest-moving';
 import { poseDistance, ROW_SIZE } from '../../web/core/suggest-pose';
 import { temperatureOf, type StepInputs } from '../../web/core/suggest-step';
 import type { BeatGrid, Features, KeyPose } from '../../web/core/types';
@@ -289,10 +289,10 @@ describe('a dance that would stand still', () => {
     const slight = (steps: StepInputs[]): StepRunner => {
       const network = fakeNetwork(steps, () => 0);
       let count = 0;
-      // 2 cm from beat to beat.
+      // Less than 3 cm from beat to beat.
       return async (inputs) => {
         const found = await network(inputs);
-        const lean = pose(0.04 * count++, 'pelvis');
+        const lean = pose(0.05 * count++, 'pelvis');
         found.poses.set(quaternionsToSixD(poseToQuaternions(lean)).subarray(0, 6));
         return found;
       };
@@ -311,6 +311,34 @@ describe('a dance that would stand still', () => {
     expect(poseDistance(found[0].rotations, REST)).toBeGreaterThanOrEqual(VISIBLE_DISTANCE);
   });
 
+  it('does not sway to and fro over a few centimetres for long', async () => {
+    const arms = (pelvis: number) => quaternionsToSixD(poseToQuaternions(pose(pelvis, 'pelvis'))).subarray(0, 6);
+    // 5 cm to one side and back, beat by beat: each of them looks like a move. Codes over 250 bow.
+    const swaying: StepRunner = async (inputs) => {
+      const found = await fakeNetwork([], () => 0)(inputs);
+      const newest = inputs.poses.data.subarray(15 * ROW_SIZE, 15 * ROW_SIZE + 6);
+      const upright = Math.abs(newest[1]) < 0.05;
+      found.poses.set(arms(found.codes[0] > 250 ? found.codes[0] / 300 : upright ? 0.1 : 0));
+      return found;
+    };
+    const found = await suggestPoses(request({ variation: 0 }), swaying);
+    expect(found).toHaveLength(39);
+    for (let i = 2; i < found.length; i++) {
+      const before = found.slice(i - 2, i).map(({ rotations }) => poseDistance(rotations, found[i].rotations));
+      expect(Math.max(...before), `at ${found[i].time} s`).toBeGreaterThanOrEqual(VISIBLE_DISTANCE);
+    }
+  });
+
+  it('asks more of poses that are a bar apart', async () => {
+    // Arms up or down by a little; the farthest codes lift them high.
+    const found = await suggestPoses(
+      request({ density: 'bar' }),
+      fakeNetwork([], (code) => (code > 300 ? code / 200 : code / 2000)),
+    );
+    const least = 1.5 * VISIBLE_DISTANCE;
+    expect(Math.min(...ways(found))).toBeGreaterThan(least);
+  });
+
   it('takes the pose that moves most where none moves enough, after a few tries', async () => {
     const steps: StepInputs[] = [];
     const found = await suggestPoses(
@@ -324,6 +352,47 @@ describe('a dance that would stand still', () => {
     const best = Math.max(...tried.map((angle) => Math.abs(angle - first)));
     const arm = jointIndex('left_shoulder') * 3 + 2;
     expect(Math.abs(found[1].rotations[arm] - found[0].rotations[arm])).toBeCloseTo(best, 3);
+  });
+});
+
+describe('a dance that would whirl round', () => {
+  /** Faces the other way on every beat; codes over `calm` bow instead. */
+  const whirling = (calm = 300): StepRunner => {
+    const network = fakeNetwork([], () => 0);
+    return async (inputs) => {
+      const found = await network(inputs);
+      const batch = inputs.noise.dims[0];
+      const newest = inputs.poses.data.subarray(15 * ROW_SIZE, 15 * ROW_SIZE + 6);
+      for (let i = 0; i < batch; i++) {
+        const way = newest[0] > 0 ? 3 : 0;
+        const turned = found.codes[i] > calm ? pose(found.codes[i] / 300, 'pelvis') : [0, way, 0, ...REST.slice(3)];
+        found.poses.set(quaternionsToSixD(poseToQuaternions(turned)).subarray(0, 6), i * ROW_SIZE);
+      }
+      return found;
+    };
+  };
+  const turn = (a: readonly number[], b: readonly number[]) =>
+    angleBetween(axisAngleToQuaternion(a.slice(0, 3)), axisAngleToQuaternion(b.slice(0, 3)));
+
+  it('turns no faster than a body can', async () => {
+    const found = await suggestPoses(request(), whirling());
+    expect(found).toHaveLength(39);
+    for (let i = 1; i < found.length; i++)
+      expect(turn(found[i].rotations, found[i - 1].rotations), `at ${found[i].time} s`).toBeLessThanOrEqual(
+        FASTEST_TURN * 0.5 + 1e-3,
+      );
+    // There is time for it from bar to bar.
+    const bars = await suggestPoses(request({ density: 'half' }), whirling(512));
+    expect(turn(bars[1].rotations, bars[0].rotations)).toBeLessThan(0.01);
+  });
+
+  it('has alternates that turn no faster, where there are some', async () => {
+    const at = key('s', 6, { suggested: true, rotations: pose(0) });
+    const before = key('b', 5.5, { suggested: true, rotations: pose(0) });
+    const others = await alternatePoses(request({ keyPoses: [before, at] }), at, whirling());
+    expect(others).toHaveLength(ALTERNATES);
+    for (const other of others) expect(turn(other, before.rotations)).toBeLessThanOrEqual(FASTEST_TURN * 0.5 + 1e-3);
+    expect(await alternatePoses(request({ keyPoses: [before, at] }), at, whirling(512))).toHaveLength(ALTERNATES);
   });
 });
 

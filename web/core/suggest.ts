@@ -1,7 +1,7 @@
 /** Key poses on beats, suggested by the first stage of DanceFormer: which beats get one, and the steps that make them. */
 import { beatCount } from './beat-count';
 import { frameOf, type TimeRange } from './document';
-import { FORBIDDEN, stepMoving, VISIBLE_DISTANCE, type Neighbour } from './suggest-moving';
+import { FORBIDDEN, stepMoving, turning, VISIBLE_DISTANCE, type Neighbour, type Neighbours } from './suggest-moving';
 import { poseOfRow, poseDistance, rowOfPose, ROW_SIZE } from './suggest-pose';
 import { StepContext, temperatureOf, type Fixed, type StepInputs } from './suggest-step';
 import { seededRandom } from './random';
@@ -159,7 +159,7 @@ export async function suggestPoses(
     // Beats that get no key pose lead from one to the next and may rest.
     const neighbours = emit.has(beat)
       ? neighboursOf(time, [...stay, ...found], grid.beats[wanted[found.length + 1]])
-      : [];
+      : null;
     const row = await stepMoving(context, beat, temperature, gumbel(seed, beat, 0), time, neighbours, run);
     const rotations = context.take(beat, row);
     if (!emit.has(beat)) continue;
@@ -170,14 +170,11 @@ export async function suggestPoses(
   return found;
 }
 
-/** The key pose before a time, and the one after it unless a suggestion comes between at `next`, seconds. */
-function neighboursOf(time: number, keys: readonly Neighbour[], next = Infinity): Neighbour[] {
-  const latest = (a: Neighbour | undefined, b: Neighbour) => (a && a.time > b.time ? a : b);
-  const before = keys.filter((key) => key.time < time).reduce<Neighbour | undefined>(latest, undefined);
-  const after = keys
-    .filter((key) => key.time > time && key.time < next)
-    .reduce<Neighbour | undefined>((a, b) => (a && a.time < b.time ? a : b), undefined);
-  return [before, after].filter((key) => key !== undefined);
+/** The key poses before a time, and the one after it unless a suggestion comes between at `next`, seconds. */
+function neighboursOf(time: number, keys: readonly Neighbour[], next = Infinity): Neighbours {
+  const recent = keys.filter((key) => key.time < time).sort((a, b) => a.time - b.time);
+  const [after] = keys.filter((key) => key.time > time && key.time < next).sort((a, b) => a.time - b.time);
+  return { around: [recent.at(-1), after].filter((key) => key !== undefined), recent };
 }
 
 /**
@@ -201,6 +198,7 @@ export async function alternatePoses(
     const { poses } = await run(context.inputs(beat, temperatureOf(request.variation), [gumbel(seed, beat, 0)]));
     context.take(beat, poses.subarray(0, ROW_SIZE));
   }
+  const around = neighboursOf(key.time, others);
   const taken = new Set<number>();
   const candidates: number[][] = [];
   let chosen: number[][] = [];
@@ -217,9 +215,15 @@ export async function alternatePoses(
       taken.add(code);
       candidates.push(poseOfRow(poses.subarray(i * ROW_SIZE, (i + 1) * ROW_SIZE)));
     });
-    chosen = farthest(key.rotations, candidates);
+    // Those that the body cannot turn to in time come only where there are no others.
+    const [within, beyond] = [true, false].map((wanted) =>
+      candidates.filter((pose) => turning(pose, key.time, around) >= 1 === wanted),
+    );
+    chosen = farthest(key.rotations, within);
+    if (chosen.length < ALTERNATES)
+      chosen.push(...farthest(key.rotations, beyond).slice(0, ALTERNATES - chosen.length));
     const least =
-      chosen.length < ALTERNATES ? 0 : poseDistance(chosen[ALTERNATES - 1], nearestOf(chosen, key.rotations));
+      within.length < ALTERNATES ? 0 : poseDistance(chosen[ALTERNATES - 1], nearestOf(chosen, key.rotations));
     if (least >= VISIBLE_DISTANCE) break;
   }
   return chosen;
