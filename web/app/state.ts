@@ -7,16 +7,7 @@ import type { CurveEdit } from '../core/curves-edit';
 import type { ProjectDocument, SongReference, TimeRange } from '../core/document';
 import type { UncorrectedDance } from '../core/finish';
 import type { TradeOffPoint } from '../core/report-curves';
-import type {
-  BeatGrid,
-  Features,
-  KeyPose,
-  LibraryPose,
-  Motion,
-  SeedClip,
-  Snap,
-  Waveform,
-} from '../core/types';
+import type { BeatGrid, Features, KeyPose, LibraryPose, Motion, SeedClip, Snap, Waveform } from '../core/types';
 import type { LoopRange } from '../audio/player';
 import type { DanceResult, LoadProgress, ModelInfo } from './ports';
 import { madeFrom, type DanceInputs } from './recipe';
