@@ -1,6 +1,6 @@
 /**
  * npm run bench: speed, sizes and memory of the built page in headless Chromium, beside Python doing the same work in the same run.
- * Prints a Markdown table. `--quick` takes fewer runs and leaves WebGPU out (minutes on a software adapter); `--no-python` leaves the references out,
+ * Prints a Markdown table. `--suggest` measures the suggestions alone. `--quick` takes fewer runs and leaves WebGPU out (minutes on a software adapter); `--no-python` leaves the references out,
  * `--timeline` measures the timeline alone.
  */
 import { execFileSync, spawn } from 'node:child_process';
@@ -12,6 +12,7 @@ import { chromium, type Page } from '@playwright/test';
 import { CHROMIUM_FLAGS, ensureChromium, installedChromium } from '../chromium.mjs';
 import { wav } from '../e2e/support/songs';
 import { asset, sizes } from './downloads';
+import { benchSuggest } from './suggest';
 import { benchTimeline, MINUTES, timelineRows } from './timeline';
 import { timeWindows } from './window';
 
@@ -21,6 +22,7 @@ const PORT = 4181;
 const ORIGIN = `http://127.0.0.1:${PORT}/`;
 const SECONDS = 180;
 const timelineOnly = process.argv.includes('--timeline');
+const suggestOnly = process.argv.includes('--suggest');
 const quick = process.argv.includes('--quick');
 const runs = quick ? 3 : 9;
 const spec = JSON.parse(readFileSync(join(top, 'web/core/spec.json'), 'utf8')) as {
@@ -228,7 +230,7 @@ if (!existsSync(join(dist, 'index.html'))) execFileSync('npm', ['run', 'build'],
 const folder = mkdtempSync(join(tmpdir(), 'posebeat-bench-'));
 const wavPath = join(folder, 'three-minutes.wav');
 writeFileSync(wavPath, wav({ seconds: SECONDS, tempo: 122, channels: 2 }));
-const python = timelineOnly ? undefined : references(wavPath);
+const python = timelineOnly || suggestOnly ? undefined : references(wavPath);
 const server = spawn('npx', ['vite', 'preview', '--port', String(PORT), '--strictPort', '--host', '127.0.0.1'], {
   cwd: top,
   stdio: 'ignore',
@@ -238,18 +240,19 @@ try {
   for (let i = 0; i < 100 && !(await fetch(ORIGIN).catch(() => undefined)); i++) {
     await new Promise((resolve) => setTimeout(resolve, 200));
   }
-  if (!timelineOnly) {
+  if (!timelineOnly && !suggestOnly) {
     await benchWindows(python?.model_seconds);
     await benchPage(wavPath, python?.librosa_seconds);
   }
+  if (!timelineOnly) for (const row of await benchSuggest(ORIGIN, wavPath, quick ? 1 : 3)) report(...row);
   const longPath = join(folder, 'ten-minutes.wav');
   writeFileSync(longPath, wav({ seconds: MINUTES * 60, tempo: 122, sampleRate: 22_050 }));
-  for (const row of timelineRows(await benchTimeline(ORIGIN, longPath))) report(...row);
+  if (!suggestOnly) for (const row of timelineRows(await benchTimeline(ORIGIN, longPath))) report(...row);
 } finally {
   process.kill(-server.pid!);
 }
 console.log(
-  `\nMeasured on ${cpus().length} cores (${cpus()[0].model.trim()}), ${timelineOnly ? '' : `medians of ${runs} windows, `}page without its 3D stage unless a row says so.\n`,
+  `\nMeasured on ${cpus().length} cores (${cpus()[0].model.trim()}), ${timelineOnly || suggestOnly ? '' : `medians of ${runs} windows, `}page without its 3D stage unless a row says so.\n`,
 );
 console.log('| What | Figure | Beside it |\n|---|---|---|');
 for (const row of rows) console.log(`| ${row.join(' | ')} |`);
