@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { barAndBeat, clockTime, lowerBound, nearestBeat, stepBeat } from '../../web/app/snapping';
+import { barAndBeat, clockTime, lowerBound, snapTime, stepBeat } from '../../web/app/snapping';
 import { barStep, keyWidths, placeKeys, stretchInSight, timeToX, xToTime } from '../../web/ui/timeline/geometry';
 import { keyText, matches, SHORTCUTS } from '../../web/ui/shortcuts';
 
@@ -8,8 +8,8 @@ const key = (id: string, time: number) => ({ id, time, rotations: [] });
 
 describe('snapping', () => {
   it('finds the nearest beat, the earlier one of two as near', () => {
-    expect([0, 0.7, 0.75, 0.76, 9].map((time) => nearestBeat(grid, time))).toEqual([0.5, 0.5, 0.5, 1, 3]);
-    expect(nearestBeat(null, 0.7)).toBe(0.7);
+    expect([0, 0.7, 0.75, 0.76, 9].map((time) => snapTime(grid, time, 'beat'))).toEqual([0.5, 0.5, 0.5, 1, 3]);
+    expect(snapTime(null, 0.7, 'beat')).toBe(0.7);
   });
   it('steps over the beat it stands on', () => {
     expect(stepBeat(grid, 1, 1)).toBe(1.5);

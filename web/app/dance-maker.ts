@@ -190,9 +190,6 @@ export function createMaker({ state, services, analysed }: Context, reporter: Re
   };
 }
 
-/** Makes dances with the engine, the report worker and the cache. */
-export type Maker = ReturnType<typeof createMaker>;
-
 function withoutDance({ backend, model, windows, milliseconds }: DanceResult): NonNullable<Dance['result']> {
   return { backend, model, windows, milliseconds };
 }

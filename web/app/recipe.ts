@@ -109,7 +109,7 @@ export function madeFrom(inputs: DanceInputs, wanted: DanceInputs, tunable: bool
 }
 
 /** True when two steps are the same. */
-export function sameStep(a: RangeStep, b: RangeStep): boolean {
+function sameStep(a: RangeStep, b: RangeStep): boolean {
   return a.from === b.from && a.to === b.to && a.seed === b.seed && a.variation === b.variation;
 }
 

@@ -1,15 +1,10 @@
 /** Times and beats: where a pose snaps to, what a time is called. */
 import { beatCount } from '../core/beat-count';
-import { lowerBound, snapTime } from '../core/snap';
+import { lowerBound } from '../core/snap';
 import type { BeatGrid } from '../core/types';
 
 export { stepBeat } from '../core/beat-count';
 export { lowerBound, snapTime } from '../core/snap';
-
-/** The beat nearest to a time; the time itself when there are no beats. */
-export function nearestBeat(grid: BeatGrid | null, time: number): number {
-  return snapTime(grid, time, 'beat');
-}
 
 /** Bar and beat of a time, both from 1; null before the first bar or without beats. */
 export function barAndBeat(grid: BeatGrid | null, time: number): { bar: number; beat: number } | null {

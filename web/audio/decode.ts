@@ -2,8 +2,8 @@
 import { sniffSound, type SoundFormat } from '../core/sound-format';
 
 /** Longest and shortest song, seconds. */
-export const MAX_SECONDS = 30 * 60;
-export const MIN_SECONDS = 1;
+const MAX_SECONDS = 30 * 60;
+const MIN_SECONDS = 1;
 /** Loudest sample of a song that counts as silent: -80 dB. */
 const SILENCE = 1e-4;
 /** Samples looked at before the page gets its turn. */

@@ -18,7 +18,7 @@ export interface Score {
 /** Slowest and fastest playback. */
 export const SPEED_RANGE = { min: 0.25, max: 1.5 } as const;
 /** The shortest loop, seconds. */
-export const MIN_LOOP = 0.1;
+const MIN_LOOP = 0.1;
 
 /**
  * Plays one decoded buffer and tells where in it the listener is.
@@ -52,10 +52,6 @@ export class Player {
     }));
   }
 
-  /** Seconds. */
-  get duration(): number {
-    return this.#duration;
-  }
   /** True while the song runs. */
   get playing(): boolean {
     return this.#playing;

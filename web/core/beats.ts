@@ -3,7 +3,7 @@
 import { logTempoPrior } from './beats-level';
 
 /** Slowest and fastest beat that is looked for, beats per minute. */
-export const TEMPO_RANGE = [50, 220] as const;
+const TEMPO_RANGE = [50, 220] as const;
 /** Tempo candidates per octave: 1.5 % steps, fine against the tolerance of the beat search. */
 const STEPS_PER_OCTAVE = 48;
 /** Window and step of the local autocorrelation, seconds. */
@@ -83,7 +83,7 @@ function sampleAt(values: ArrayLike<number>, position: number): number {
 }
 
 /** Candidate tempi, beats per minute, evenly spaced on a log scale. */
-export function tempoCandidates(): Float64Array {
+function tempoCandidates(): Float64Array {
   const count = Math.floor(STEPS_PER_OCTAVE * Math.log2(TEMPO_RANGE[1] / TEMPO_RANGE[0])) + 1;
   return Float64Array.from({ length: count }, (_, i) => TEMPO_RANGE[0] * 2 ** (i / STEPS_PER_OCTAVE));
 }

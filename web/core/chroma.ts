@@ -4,7 +4,7 @@ import Meyda from 'meyda';
 export const PITCH_CLASSES = 12;
 
 /** Shares of a frame's energy above which a pitch class gets one more quarter: logarithmic loudness steps of CENS. */
-export const QUANTISATION_STEPS = [0.4, 0.2, 0.1, 0.05] as const;
+const QUANTISATION_STEPS = [0.4, 0.2, 0.1, 0.05] as const;
 
 /** Meyda's settings are properties of one shared object, and its bundles wrap that object differently. */
 interface MeydaSettings {

@@ -49,7 +49,7 @@ const turns = new Float32Array(JOINT_COUNT * 4);
 const ORIGIN = [0, 0, 0];
 
 /** Soles and floor height of one frame, written into a track. */
-export function trackFrame(quaternions: Float32Array, track: BodyTrack, index: number): void {
+function trackFrame(quaternions: Float32Array, track: BodyTrack, index: number): void {
   forwardKinematics(quaternions, ORIGIN, joints, turns);
   let ground = 0;
   SOLES.forEach(({ foot, heel }, sole) => {

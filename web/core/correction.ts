@@ -17,7 +17,7 @@ export interface FrameKey {
 }
 
 /** How firmly a key is hit, 0..1: the dial's key strength times the key's own. */
-export function effectiveStrength(dial: number, own: number | undefined): number {
+function effectiveStrength(dial: number, own: number | undefined): number {
   return Math.min(1, Math.max(0, dial * (own ?? 1)));
 }
 

@@ -15,7 +15,7 @@ const LIMBS = (JOINT_COUNT - 1) * 3;
 /** Width of the Gaussian of BC, seconds: 3 frames at 60 a second, as in the Beat Alignment Score that it starts from. */
 const BEAT_SIGMA = 0.05;
 /** A body whose joints move slower than this on average stands still to the eye, m/s. */
-export const FREEZE_SPEED = 0.05;
+const FREEZE_SPEED = 0.05;
 
 /**
  * Longest stretch over which the mean joint speed (pelvis held still) stays below a threshold.

@@ -9,7 +9,7 @@ import type { BeatGrid } from './types';
 /** Slowest and fastest tempo of a grid, beats per minute, as the document's schema has it. */
 export const GRID_TEMPO = { min: 20, max: 400 } as const;
 /** Beats are never put closer together than this, seconds. */
-export const MIN_BEAT_GAP = 0.05;
+const MIN_BEAT_GAP = 0.05;
 /** So many gaps at an end of the grid tell how it goes on beyond. */
 const EDGE_GAPS = 8;
 /** A downbeat belongs to a beat that is this near, seconds: files may have rounded them differently. */

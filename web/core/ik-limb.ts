@@ -101,7 +101,7 @@ export function limitJoint({ quaternions, slack }: PlacedBody, joint: number): b
 }
 
 /** Shortest turn from one direction to another (neither needs unit length), of `most` radians at most. */
-export function turnBetween(from: Numbers, to: Numbers, most = Math.PI): number[] {
+function turnBetween(from: Numbers, to: Numbers, most = Math.PI): number[] {
   const scale = 1 / (norm(from) * norm(to) || 1);
   const c = cross(from, to);
   const sine = norm(c) * scale;

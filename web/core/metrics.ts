@@ -19,7 +19,7 @@ export function jointPositions(motion: Motion, rootRemoved = false): Float32Arra
 }
 
 /** A dance as the network's numbers: frames x 147 (24 x 6D, then root x y z). */
-export function motionRows(motion: Motion): Float32Array {
+function motionRows(motion: Motion): Float32Array {
   const { motionSize, rotationSize } = spec.model;
   const rows = new Float32Array(motion.frames * motionSize);
   for (let t = 0; t < motion.frames; t++) {

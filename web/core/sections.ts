@@ -5,7 +5,6 @@
  * and unlike each other: J. Foote, "Automatic audio segmentation using a measure of audio novelty", ICME 2000. With dot products as
  * similarity and a kernel without taper, that sum is the squared distance of the two stretches' mean bars, which is what is computed.
  */
-import { lowerBound } from './snap';
 import type { BeatGrid, Features } from './types';
 
 /** A stretch of a song; sections with the same label sound alike. */
@@ -115,13 +114,4 @@ function labelled(vectors: readonly Float64Array[], starts: readonly number[]): 
     labels.push(best >= 0 ? labels[best] : Math.max(-1, ...labels) + 1);
   });
   return labels.map((label) => (label < 26 ? String.fromCharCode(65 + label) : `A${label - 25}`));
-}
-
-/** The section at a time, or null. */
-export function sectionAt(sections: readonly Section[], time: number): Section | null {
-  const index = lowerBound(
-    sections.map((section) => section.start),
-    time + 1e-9,
-  );
-  return sections[index - 1] ?? null;
 }

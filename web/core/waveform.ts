@@ -2,7 +2,7 @@
 import type { Waveform } from './types';
 
 /** Buckets per second: a pixel or less each at the timeline's usual zoom. */
-export const WAVEFORM_RATE = 100;
+const WAVEFORM_RATE = 100;
 
 /** Collects a waveform from samples that come in chunks. */
 export class WaveformBuilder {

@@ -12,7 +12,7 @@ import {
 import { jointIndex } from '../core/skeleton';
 
 /** Background of the stage: what the floor fades into. */
-export const STAGE_COLOURS = { top: new Color('#0a0c11'), horizon: new Color('#171a21'), floor: new Color('#30333b') };
+const STAGE_COLOURS = { top: new Color('#0a0c11'), horizon: new Color('#171a21'), floor: new Color('#30333b') };
 
 /** Balls that darken the floor below them: [joint, radius in metres]. */
 const BLOCKERS: [number, number][] = (

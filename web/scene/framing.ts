@@ -39,12 +39,6 @@ export class Spring {
     this.value = goal + (offset + push) * decay;
     return this.value;
   }
-
-  /** Jumps to a value and rests there. */
-  reset(value: number): void {
-    this.value = value;
-    this.velocity = 0;
-  }
 }
 
 /** Frame times, milliseconds: slower than `late` is worth less resolution, slower than `crawl` fewer triangles too. */

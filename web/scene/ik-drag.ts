@@ -16,7 +16,7 @@ import type { PoseTools } from '../core/types';
 import { standingRoot } from './body-points';
 
 /** Most that a joint turns from one frame of a drag to the next, degrees. */
-export const MOST_TURN = 20;
+const MOST_TURN = 20;
 /** Below this a further solve would not be seen, degrees. */
 const STILL = 0.05;
 /** A lifted foot goes with its leg from this height on, metres over where it stands. */

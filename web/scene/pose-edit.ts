@@ -61,24 +61,10 @@ export class PoseEdit {
     this.tell('start');
   }
 
-  /** Sets one joint's local rotation (x y z w). */
-  setJoint(joint: number, q: Numbers): void {
-    this.start();
-    for (let i = 0; i < 4; i++) this.quaternions[joint * 4 + i] = q[i];
-    this.tell('change');
-  }
-
   /** Sets every joint's local rotation, 24 x 4. */
   setAll(quaternions: Numbers): void {
     this.start();
     this.quaternions.set(Array.from(quaternions));
-    this.tell('change');
-  }
-
-  /** Turns one joint about one of its own axes. */
-  rotate(joint: number, axis: 'x' | 'y' | 'z', radians: number): void {
-    this.start();
-    rotateLocal(this.quaternions, joint, axis, radians);
     this.tell('change');
   }
 

@@ -50,7 +50,7 @@ export interface ModelKind<I, O, G> {
 }
 
 /** The dance model: a window in, its motion out. */
-export const DANCE_KIND: ModelKind<WindowInputs, Float32Array, GoldenWindow> = {
+const DANCE_KIND: ModelKind<WindowInputs, Float32Array, GoldenWindow> = {
   files: DANCE_MODEL,
   open: openSession,
   error: goldenError,
@@ -139,7 +139,7 @@ export const DanceEngine = {
 };
 
 /** What to try first, and why. A software adapter is taken only when it is asked for. */
-export async function chooseBackend(
+async function chooseBackend(
   forced: Backend | undefined,
   check: typeof checkAdapter = checkAdapter,
 ): Promise<{ backend: Backend; reason: string; name: string }> {

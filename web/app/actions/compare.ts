@@ -96,6 +96,3 @@ export function compareActions(context: Context, dances: DanceActions) {
   };
   return actions;
 }
-
-/** Actions that compare two dances. */
-export type CompareActions = ReturnType<typeof compareActions>;

@@ -10,7 +10,7 @@ import { keyMoves } from './key-moves';
 import { keySelection } from './key-selection';
 
 /** Said when something locked should have changed. */
-export const LOCKED_NOTICE = 'That key pose is locked and stays as it is: unlock it first.';
+const LOCKED_NOTICE = 'That key pose is locked and stays as it is: unlock it first.';
 
 const plural = (count: number) => (count === 1 ? 'key pose' : `${count} key poses`);
 

@@ -88,6 +88,3 @@ export function playbackActions(context: Context, reveal: (time: number) => void
     },
   };
 }
-
-/** Actions on playback. */
-export type PlaybackActions = ReturnType<typeof playbackActions>;

@@ -21,7 +21,7 @@ const LEAST_VARIATION = 0.6;
 const HIGHEST_SEED = 2 ** 31 - 1;
 
 /** True when two ranges have the same ends, give or take a frame. */
-export function sameRange(a: TimeRange, b: TimeRange): boolean {
+function sameRange(a: TimeRange, b: TimeRange): boolean {
   return Math.abs(frameOf(a.start) - frameOf(b.start)) <= 1 && Math.abs(frameOf(a.end) - frameOf(b.end)) <= 1;
 }
 
@@ -174,6 +174,3 @@ export function rangeActions(context: Context, dances: DanceActions) {
   };
   return actions;
 }
-
-/** Actions on ranges. */
-export type RangeActions = ReturnType<typeof rangeActions>;

@@ -161,6 +161,3 @@ export function tuningActions(context: Context, reporter: Reporter, dances: Danc
 }
 
 type TradeOffPoints = NonNullable<Context['state']['tradeOff']['value']>['points'];
-
-/** Actions on the dance at hand. */
-export type TuningActions = ReturnType<typeof tuningActions>;

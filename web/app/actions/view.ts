@@ -4,7 +4,7 @@ import type { Snap } from '../../core/types';
 import type { Panel } from '../state';
 
 /** Closest zoom, pixels per second: a frame is 20 px wide. */
-export const MAX_ZOOM = 600;
+const MAX_ZOOM = 600;
 /** Room before the first and after the last beat, so that poses there are seen whole, pixels. */
 const VIEW_PADDING = 30;
 /** A new song opens with this much of it in sight, but not below this scale. */

@@ -12,7 +12,7 @@ export interface Mesh {
 }
 
 /** Gradient of the shape by central differences, unit length. */
-export function normalAt(shape: Shape, x: number, y: number, z: number): Vector {
+function normalAt(shape: Shape, x: number, y: number, z: number): Vector {
   const e = 4e-4;
   const g = [
     shape(x + e, y, z) - shape(x - e, y, z),
