@@ -114,7 +114,7 @@ test('a character of one’s own dances, is kept, and leaves as a file with the 
   await knee.selectOption('None');
   await expect(bones.getByRole('button', { name: 'Use these bones' })).toBeDisabled();
   await expect(knee).toHaveAttribute('aria-invalid', 'true');
-  await bones.getByRole('button', { name: 'Back to the guess' }).click();
+  await bones.getByRole('button', { name: 'Reset' }).click();
   await expect(knee).toHaveValue(guess);
   await page.keyboard.press('Escape');
   await expect(bones).toBeHidden();

@@ -162,6 +162,7 @@ test('a video goes straight to the disk; a cancelled one leaves nothing there', 
   // The panel may be closed meanwhile: what is being done stays in sight.
   await page.keyboard.press('Escape');
   await expect(page.locator('.video-chip')).toContainText('Making the video');
+  expect((await page.locator('.video-chip').boundingBox())!.height).toBeLessThan(64);
   await expect(page.getByText(/\.webm is saved/)).toBeVisible({ timeout: 240_000 });
   const [, file] = Object.entries(await bytes()).find(([name]) => name.endsWith('.webm'))!;
   const found = await inside(Buffer.from(file, 'latin1'));

@@ -150,6 +150,15 @@ describe('characters of one’s own', () => {
     expect(third).toHaveBeenCalledTimes(1);
   });
 
+  it('says only of the one that dances that its bones can be checked', async () => {
+    const { store, words } = page();
+    await store.openCharacter(file(mixamoGlb(), 'Robo.glb'));
+    await store.openCharacter(file(vrm1File(), 'Box.vrm'));
+    expect(words()).toBe('“Box” dances now.');
+    await store.useAvatar(null);
+    expect(words()).toBe('');
+  });
+
   it('gives a character in use its bones back when the question is left', async () => {
     const { store, state } = page();
     await store.openCharacter(file(mixamoGlb(), 'a.glb'));

@@ -11,6 +11,8 @@ import { hashBytes } from '../hash';
 import { bonesActions } from './avatar-bones';
 
 type Opener = typeof avatarOpen;
+/** What the word that a character dances offers. */
+const CHECK = 'Check the bones';
 const opener = (): Promise<Opener> => import('../avatar-open');
 
 /** Options of the public call. */
@@ -46,6 +48,8 @@ export function avatarActions(context: Context, store: AvatarStore = createAvata
     // A question about whoever goes, or is passed over, is answered by that.
     if (state.avatarMapping.value?.figure !== next?.figure) bones.actions.cancelBones();
     state.avatar.value = next;
+    // It is about whoever danced then.
+    state.notices.value = state.notices.value.filter(({ action }) => action?.label !== CHECK);
     if (before && before.figure !== next?.figure) before.figure.dispose();
   };
 
@@ -129,7 +133,7 @@ export function avatarActions(context: Context, store: AvatarStore = createAvata
       else {
         use(opened);
         context.notify('info', `“${opened.name}” dances now.`, {
-          label: 'Check the bones',
+          label: CHECK,
           run: () => void bones.checkBones(),
         });
       }

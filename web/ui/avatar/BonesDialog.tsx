@@ -80,8 +80,13 @@ function Contents({ mapping }: { mapping: AvatarMapping }) {
       </div>
       <div class="bones-foot">
         {changed && (
-          <button type="button" class="quiet" onClick={() => store.guessBones()}>
-            Back to the guess
+          <button
+            type="button"
+            class="quiet"
+            title="Back to the bones that were guessed"
+            onClick={() => store.guessBones()}
+          >
+            Reset
           </button>
         )}
         <button type="button" class="secondary" onClick={() => store.cancelBones()}>

@@ -26,7 +26,7 @@ export function SaveButton(props: {
     <button
       ref={takeFocus}
       type="button"
-      class="secondary full progress"
+      class={`secondary progress ${full ? 'full' : ''}`}
       title="Stop it"
       onClick={() => cancelMaking(what)}
     >
