@@ -2,6 +2,7 @@
 import { conjugate, multiply, rotateVector, type Numbers } from './rotation';
 import { forwardKinematics, JOINT_COUNT, PARENTS } from './skeleton';
 import { spec } from './spec';
+import { cross, distance, dot, minus, norm, pointOf } from './vector';
 
 const LEGS = [spec.skeleton.feet.left, spec.skeleton.feet.right].map(({ ankle }) => ({
   ankle,
@@ -23,14 +24,13 @@ const turns = new Float32Array(JOINT_COUNT * 4);
 export function moveFoot(quaternions: Float32Array, foot: 0 | 1, offset: Numbers): void {
   const { hip, knee, ankle } = LEGS[foot];
   forwardKinematics(quaternions, [0, 0, 0], joints, turns);
-  const point = (joint: number) => [joints[joint * 3], joints[joint * 3 + 1], joints[joint * 3 + 2]];
   const turn = (joint: number) => turns.slice(joint * 4, joint * 4 + 4);
-  const [hipAt, kneeAt, ankleAt] = [point(hip), point(knee), point(ankle)];
+  const [hipAt, kneeAt, ankleAt] = [hip, knee, ankle].map((joint) => pointOf(joints, joint));
   const thigh = distance(hipAt, kneeAt);
   const shin = distance(kneeAt, ankleAt);
   const goal = ankleAt.map((value, k) => value + offset[k] - hipAt[k]);
   const longest = (thigh + shin) * LONGEST;
-  const reach = Math.hypot(goal[0], goal[1], goal[2]);
+  const reach = norm(goal);
   // A leg that is straighter than the limit already keeps its length: shortening it would bend it out of nothing.
   const now = distance(hipAt, ankleAt);
   const wanted = Math.min(reach, Math.max(longest, Math.min(now, reach)));
@@ -54,10 +54,6 @@ export function moveFoot(quaternions: Float32Array, foot: 0 | 1, offset: Numbers
   quaternions.set(multiply(conjugate(newKnee), turn(ankle)), ankle * 4);
 }
 
-function distance(a: number[], b: number[]): number {
-  return Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-
 /** Angle inside the knee, by the law of cosines, radians. */
 function kneeAngle(thigh: number, shin: number, span: number): number {
   const cosine = (thigh * thigh + shin * shin - span * span) / (2 * thigh * shin);
@@ -66,35 +62,23 @@ function kneeAngle(thigh: number, shin: number, span: number): number {
 
 /** Axis about which a positive turn of the shin straightens the leg. */
 function bendAxis(hip: number[], knee: number[], ankle: number[], kneeTurn: Float32Array): number[] {
-  const up = [hip[0] - knee[0], hip[1] - knee[1], hip[2] - knee[2]];
-  const down = [ankle[0] - knee[0], ankle[1] - knee[1], ankle[2] - knee[2]];
-  const normal = [
-    up[1] * down[2] - up[2] * down[1],
-    up[2] * down[0] - up[0] * down[2],
-    up[0] * down[1] - up[1] * down[0],
-  ];
-  const length = Math.hypot(normal[0], normal[1], normal[2]);
+  const normal = cross(minus(hip, knee), minus(ankle, knee));
+  const length = norm(normal);
   // Near a straight leg the plane is noise: fade over to the knee's own axis, about which a human knee bends.
   const sure = Math.min(1, length / 0.02);
   const own = rotateVector(kneeTurn, [1, 0, 0]);
   return normal.map((value, k) => (length > 0 ? (sure * value) / length : 0) - (1 - sure) * own[k]);
 }
 
-function dot(a: number[], b: number[]): number {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 function about(axis: number[], angle: number): number[] {
-  const length = Math.hypot(axis[0], axis[1], axis[2]) || 1;
+  const length = norm(axis) || 1;
   const scale = Math.sin(angle / 2) / length;
   return [axis[0] * scale, axis[1] * scale, axis[2] * scale, Math.cos(angle / 2)];
 }
 
 /** Shortest rotation from one direction to another. */
 function between(a: number[], b: number[]): number[] {
-  const [la, lb] = [Math.hypot(a[0], a[1], a[2]), Math.hypot(b[0], b[1], b[2])];
-  const w = la * lb + dot(a, b);
-  const q = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], w];
+  const q = [...cross(a, b), norm(a) * norm(b) + dot(a, b)];
   const length = Math.hypot(q[0], q[1], q[2], q[3]);
   return length > 1e-9 ? q.map((value) => value / length) : [0, 0, 0, 1];
 }

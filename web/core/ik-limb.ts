@@ -3,6 +3,7 @@ import type { IkBody } from './ik-body';
 import { clampRotation } from './joint-limits';
 import { axisAngleToQuaternion, conjugate, multiply, rotateVector, type Numbers } from './rotation';
 import { forwardKinematics, JOINT_COUNT, jointIndex, PARENTS } from './skeleton';
+import { cross, dot, minus, norm, pointOf, type Vector } from './vector';
 
 /** Two bones and the joints at their ends. */
 export interface Limb {
@@ -59,21 +60,6 @@ export function createPlacedBody(): PlacedBody {
   };
 }
 
-type Vector = [number, number, number];
-const at = (values: Numbers, joint: number): Vector => [
-  values[joint * 3],
-  values[joint * 3 + 1],
-  values[joint * 3 + 2],
-];
-const minus = (a: Numbers, b: Numbers): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const cross = (a: Numbers, b: Numbers): Vector => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
-];
-const dot = (a: Numbers, b: Numbers) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const norm = (a: Numbers) => Math.hypot(a[0], a[1], a[2]);
-
 /** Turns a joint in the world and everything that hangs on it; the turn comes after the joint's present one. */
 export function turnInWorld(body: PlacedBody, joint: number, turn: Numbers): void {
   setWorldTurn(body, joint, multiply(turn, body.turns.subarray(joint * 4, joint * 4 + 4)));
@@ -129,9 +115,9 @@ export function fitLimb(body: PlacedBody, { upper, middle, end, hinge }: Limb, t
   // The hinge is not exactly across both bones, so that further rounds take away what the first one left.
   for (let round = 0; round < FIT_ROUNDS; round++) {
     const { joints, turns } = body;
-    const a = at(joints, upper);
-    const u = minus(at(joints, middle), a);
-    const v = minus(at(joints, end), at(joints, middle));
+    const a = pointOf(joints, upper);
+    const u = minus(pointOf(joints, middle), a);
+    const v = minus(pointOf(joints, end), pointOf(joints, middle));
     const way = minus(target, a);
     const [l1, l2] = [norm(u), norm(v)];
     const distance = Math.min(Math.max(norm(way), Math.abs(l1 - l2) + 1e-3), (l1 + l2) * STRETCH);
@@ -150,11 +136,11 @@ export function fitLimb(body: PlacedBody, { upper, middle, end, hinge }: Limb, t
     const present = Math.atan2(dot(bent, unit), dot(u, v) / (l1 * l2));
     turnInWorld(body, middle, axisAngleToQuaternion(unit.map((c) => c * (wanted - present))));
 
-    turnInWorld(body, upper, turnBetween(minus(at(body.joints, end), a), way, SWING));
-    const left = norm(minus(target, at(body.joints, end)));
+    turnInWorld(body, upper, turnBetween(minus(pointOf(body.joints, end), a), way, SWING));
+    const left = norm(minus(target, pointOf(body.joints, end)));
     if (left < 1e-5) return left;
   }
-  return norm(minus(target, at(body.joints, end)));
+  return norm(minus(target, pointOf(body.joints, end)));
 }
 
 /**
@@ -163,8 +149,8 @@ export function fitLimb(body: PlacedBody, { upper, middle, end, hinge }: Limb, t
  * @param part how much of the way
  */
 export function swivelLimb(body: PlacedBody, { upper, middle, end }: Limb, target: Numbers, part = 1): void {
-  const a = at(body.joints, upper);
-  const line = minus(at(body.joints, end), a);
+  const a = pointOf(body.joints, upper);
+  const line = minus(pointOf(body.joints, end), a);
   const length2 = dot(line, line);
   if (length2 < 1e-6) return;
   const across = (p: Vector): Vector => {
@@ -174,7 +160,7 @@ export function swivelLimb(body: PlacedBody, { upper, middle, end }: Limb, targe
       line.map((c) => c * t),
     );
   };
-  const from = across(at(body.joints, middle));
+  const from = across(pointOf(body.joints, middle));
   const to = across([target[0], target[1], target[2]]);
   if (norm(from) < 1e-4 || norm(to) < 1e-4) return;
   const length = Math.sqrt(length2);
@@ -182,14 +168,14 @@ export function swivelLimb(body: PlacedBody, { upper, middle, end }: Limb, targe
   const axis = line.map((c) => c / length);
 
   const start = body.quaternions.slice();
-  const goal = at(body.joints, end);
+  const goal = pointOf(body.joints, end);
   const held = Array.from(body.turns.subarray(end * 4, end * 4 + 4));
   const attempt = (share: number): boolean => {
     body.quaternions.set(start);
     place(body);
     turnInWorld(body, upper, axisAngleToQuaternion(axis.map((c) => c * angle * share)));
     setWorldTurn(body, end, held);
-    return norm(minus(goal, at(body.joints, end))) < 5e-4;
+    return norm(minus(goal, pointOf(body.joints, end))) < 5e-4;
   };
   if (attempt(1)) return;
   // The limits stop it on the way: as far as it goes.
