@@ -1,6 +1,6 @@
 import { describe, expect, it, vi } from 'vitest';
-import type { GenerateReply, GenerateRequest } from '../../web/workers/protocol';
-import { GenerateClient, type GenerateJob } from '../../web/workers/generate-client';
+import type { DanceRequest, GenerateReply, GenerateRequest } from '../../web/workers/protocol';
+import { GenerateClient } from '../../web/workers/generate-client';
 import { emptyMotion } from '../../web/core/motion';
 import { FakeWorker } from './support/worker';
 
@@ -12,7 +12,7 @@ class GenerateWorker extends FakeWorker<GenerateRequest, GenerateReply> {
 
 const loaded = { backend: 'wasm', threads: 2, model: 'light (q8)', reason: 'test' } as const;
 const result = { motion: emptyMotion(2), backend: 'wasm', model: 'light', windows: 1, milliseconds: 3 } as const;
-const job = { frames: 2 } as unknown as GenerateJob;
+const job = { frames: 2 } as unknown as DanceRequest;
 const options = { baseUrl: 'https://example.test/app/' };
 
 function started() {

@@ -1,11 +1,13 @@
 /** What the app needs from the rooms around it; `main.ts` plugs the real ones in, tests plug in their own. */
 import type { UncorrectedDance } from '../core/finish';
 import type { BeatGrid, Features, LibraryPose, Motion, SeedClip, Waveform } from '../core/types';
-import type { Backend, DanceRequest } from '../workers/protocol';
+import type { Analysis, Backend, DanceRequest, DanceResult, LoadProgress, ModelInfo } from '../workers/protocol';
 import type { CurveDance } from '../core/curves';
 import type { CurveEdit } from '../core/curves-edit';
 import type { EngineName, ProjectDocument } from '../core/document';
 import type { DanceInputs } from './recipe';
+
+export type { DanceResult, LoadProgress, ModelInfo } from '../workers/protocol';
 
 /** A song as the browser decoded it. */
 export interface DecodedSong {
@@ -19,44 +21,6 @@ export interface AnalyseHooks {
   onProgress?: (fraction: number, waveform?: Waveform) => void;
   /** Features and beats of the first seconds. */
   onHead?: (features: Features, grid: BeatGrid) => void;
-}
-
-/** The whole analysis of a song. */
-export interface Analysis {
-  features: Features;
-  grid: BeatGrid;
-  waveform: Waveform;
-  milliseconds: number;
-}
-
-/** How the loaded model runs. */
-export interface ModelInfo {
-  backend: Backend;
-  threads: number;
-  model: string;
-  /** Why this backend, in a sentence. */
-  reason: string;
-}
-
-/** Progress of loading the model. */
-export interface LoadProgress {
-  fraction: number;
-  bytes: number;
-  totalBytes: number;
-  cached: boolean;
-}
-
-/** A finished dance. */
-export interface DanceResult {
-  motion: Motion;
-  /** What another key strength is made from without the network. */
-  uncorrected?: UncorrectedDance;
-  /** Engine `curves`: what the motion is sampled from. */
-  curves?: CurveDance;
-  backend: Backend;
-  model: string;
-  windows: number;
-  milliseconds: number;
 }
 
 /** The generate worker, seen from the app. */

@@ -1,7 +1,7 @@
 /** The page's side of the analyse worker. */
 import { monoPart, yieldToPage } from '../audio/decode';
 import type { BeatGrid, Features, Waveform } from '../core/types';
-import type { AnalyseReply, AnalyseRequest } from './protocol';
+import type { AnalyseReply, AnalyseRequest, Analysis } from './protocol';
 
 /** Sound that is asked for piece by piece. */
 export interface SoundSource {
@@ -22,14 +22,6 @@ export interface AnalyseOptions {
   signal?: AbortSignal;
 }
 
-/** Everything found in a song, and how long it took in the worker. */
-export interface AnalyseResult {
-  features: Features;
-  grid: BeatGrid;
-  waveform: Waveform;
-  milliseconds: number;
-}
-
 /** Samples per message: about 1.5 s of sound, mixed well within a frame of the page. */
 const CHUNK = 1 << 16;
 /** Chunks the worker has not answered yet: enough to keep it busy, few enough that a cancel is heard soon. */
@@ -43,7 +35,7 @@ interface Job {
   /** Wakes the sender. */
   wake: () => void;
   isOver: boolean;
-  resolve(result: AnalyseResult): void;
+  resolve(result: Analysis): void;
   reject(error: unknown): void;
 }
 
@@ -59,7 +51,7 @@ export class AnalyseClient {
   /**
    * @throws DOMException AbortError when the signal is aborted or another song takes over; Error with a message for people
    */
-  analyse(source: SoundSource | AudioBuffer, options: AnalyseOptions = {}): Promise<AnalyseResult> {
+  analyse(source: SoundSource | AudioBuffer, options: AnalyseOptions = {}): Promise<Analysis> {
     const { signal } = options;
     if (signal?.aborted) return Promise.reject(abortError());
     if (this.current) this.cancel(this.current);

@@ -1,20 +1,15 @@
 /** The page's side of the generate worker. */
 import type { EngineName } from '../core/document';
 import type { Motion } from '../core/types';
-import type { Backend, DanceRequest, GenerateReply, GenerateRequest } from './protocol';
-
-type Loaded = Omit<Extract<GenerateReply, { type: 'loaded' }>, 'type' | 'job'>;
-type Result = Omit<Extract<GenerateReply, { type: 'result' }>, 'type' | 'job'>;
-type Loading = Omit<Extract<GenerateReply, { type: 'loading' }>, 'type' | 'job'>;
-
-/** What a dance is made from. */
-export type GenerateJob = DanceRequest;
-/** The backend in use and why. */
-export type LoadedModel = Loaded;
-/** A finished dance and how it was made. */
-export type GenerateResult = Result;
-/** How far the download of the model is. */
-export type LoadProgress = Loading;
+import type {
+  Backend,
+  DanceRequest,
+  DanceResult,
+  GenerateReply,
+  GenerateRequest,
+  LoadProgress,
+  ModelInfo,
+} from './protocol';
 
 /** How to load the model. */
 export interface LoadOptions {
@@ -42,7 +37,7 @@ interface Load {
   /** Backend and threads. */
   wanted: string;
   job: number;
-  promise: Promise<LoadedModel>;
+  promise: Promise<ModelInfo>;
 }
 
 interface Pending {
@@ -63,11 +58,11 @@ export class GenerateClient {
    */
   constructor(
     private readonly createWorker: () => Worker = startWorker,
-    public onBackendChange: (model: LoadedModel) => void = () => undefined,
+    public onBackendChange: (model: ModelInfo) => void = () => undefined,
   ) {}
 
   /** The light model in use, once it is loaded. */
-  get loaded(): Promise<LoadedModel> | undefined {
+  get loaded(): Promise<ModelInfo> | undefined {
     return this.loads.get('light')?.promise;
   }
 
@@ -75,14 +70,14 @@ export class GenerateClient {
    * Loads onnxruntime and the model and checks the backend. A second call for the same backend and threads is the first.
    * @throws Error with a message for people
    */
-  load(options: LoadOptions = {}): Promise<LoadedModel> {
+  load(options: LoadOptions = {}): Promise<ModelInfo> {
     const { backend, threads, onProgress, engine = 'light' } = options;
     const wanted = `${backend ?? 'best'} ${threads ?? 'auto'}`;
     const before = this.loads.get(engine);
     if (before?.wanted === wanted) return before.promise;
     const baseUrl = options.baseUrl ?? document.baseURI;
     const job = ++this.lastJob;
-    const promise = new Promise<LoadedModel>((resolve, reject) => {
+    const promise = new Promise<ModelInfo>((resolve, reject) => {
       this.pending.set(job, {
         receive: (reply) => {
           if (reply.type === 'loading') onProgress?.(strip(reply));
@@ -106,7 +101,7 @@ export class GenerateClient {
    * Makes a dance; loads the model first if nothing has.
    * @throws DOMException AbortError when the signal is aborted; Error with a message for people
    */
-  async generate(request: GenerateJob, hooks: GenerateHooks = {}): Promise<GenerateResult> {
+  async generate(request: DanceRequest, hooks: GenerateHooks = {}): Promise<DanceResult> {
     const { signal, onPartial } = hooks;
     signal?.throwIfAborted();
     const abortion = abortPromise(signal);
@@ -114,7 +109,7 @@ export class GenerateClient {
       const { engine = 'light' } = request;
       await Promise.race([this.loads.get(engine)?.promise ?? this.load({ engine }), abortion.promise]);
       const job = ++this.lastJob;
-      const result = new Promise<GenerateResult>((resolve, reject) => {
+      const result = new Promise<DanceResult>((resolve, reject) => {
         this.pending.set(job, {
           receive: (reply) => {
             if (reply.type === 'partial') onPartial?.(reply.motion, reply.fraction, reply.windows);
@@ -168,7 +163,7 @@ export class GenerateClient {
     this.worker.postMessage(request);
   }
 
-  private moved(job: number, model: LoadedModel): void {
+  private moved(job: number, model: ModelInfo): void {
     for (const [engine, load] of this.loads) {
       if (load.job !== job) continue;
       this.loads.set(engine, { ...load, promise: Promise.resolve(model) });

@@ -14,12 +14,20 @@ export type AnalyseRequest =
   | { type: 'chunk'; job: number; pcm: Float32Array }
   | { type: 'cancel'; job: number };
 
+/** Everything found in a song, and how long it took in the worker. */
+export interface Analysis {
+  features: Features;
+  grid: BeatGrid;
+  waveform: Waveform;
+  milliseconds: number;
+}
+
 /** Analyse worker -> page. */
 export type AnalyseReply =
   | { type: 'progress'; job: number; fraction: number; waveform?: Waveform }
   /** Features of the first seconds, while the rest is worked on. */
   | { type: 'head'; job: number; features: Features; grid: BeatGrid }
-  | { type: 'result'; job: number; features: Features; grid: BeatGrid; waveform: Waveform; milliseconds: number }
+  | ({ type: 'result'; job: number } & Analysis)
   | { type: 'cancelled'; job: number }
   | { type: 'error'; job: number; message: string };
 
@@ -67,24 +75,42 @@ export type GenerateRequest =
   | ({ type: 'generate'; job: number } & DanceRequest)
   | { type: 'cancel'; job: number };
 
+/** How far the download of the model is. */
+export interface LoadProgress {
+  fraction: number;
+  bytes: number;
+  totalBytes: number;
+  cached: boolean;
+}
+
+/** How the loaded model runs. */
+export interface ModelInfo {
+  backend: Backend;
+  threads: number;
+  model: string;
+  /** Why this backend, in a sentence. */
+  reason: string;
+}
+
+/** A finished dance and how it was made. */
+export interface DanceResult {
+  motion: Motion;
+  /** What another key strength is made from without the network; a range has one only where the rest has. */
+  uncorrected?: UncorrectedDance;
+  /** Engine `curves`: the curves that the motion is sampled from. */
+  curves?: CurveDance;
+  backend: Backend;
+  model: string;
+  windows: number;
+  milliseconds: number;
+}
+
 /** Generate worker -> page. */
 export type GenerateReply =
-  | { type: 'loading'; job: number; fraction: number; bytes: number; totalBytes: number; cached: boolean }
-  | { type: 'loaded'; job: number; backend: Backend; threads: number; model: string; reason: string }
+  | ({ type: 'loading'; job: number } & LoadProgress)
+  | ({ type: 'loaded'; job: number } & ModelInfo)
   /** The dance so far: frames [0, motion.frames) can be played; a range comes only as a whole, so until then there is none. */
   | { type: 'partial'; job: number; motion: Motion | null; fraction: number; windows: number }
-  | {
-      type: 'result';
-      job: number;
-      motion: Motion;
-      /** What another key strength is made from without the network; a range has one only where the rest has. */
-      uncorrected?: UncorrectedDance;
-      /** Engine `curves`: the curves that the motion is sampled from. */
-      curves?: CurveDance;
-      backend: Backend;
-      model: string;
-      windows: number;
-      milliseconds: number;
-    }
+  | ({ type: 'result'; job: number } & DanceResult)
   | { type: 'cancelled'; job: number }
   | { type: 'error'; job: number; message: string };
