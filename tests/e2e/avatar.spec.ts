@@ -161,7 +161,7 @@ test('a character of one’s own dances, is kept, and leaves as a file with the 
 
   // It holds a motion now too: which of them is wanted?
   await dropFile(page, bytes, 'both.glb');
-  const question = page.getByRole('dialog', { name: 'A character that dances already' });
+  const question = page.getByRole('dialog', { name: 'Character or motion?' });
   await question.getByRole('button', { name: 'Use the motion' }).click();
   await expect(page.getByRole('heading', { name: 'Choose a frame' })).toBeVisible();
 

@@ -16,7 +16,7 @@ export function CharacterQuestion() {
     <Dialog
       open={file !== null}
       onClose={() => (avatarQuestion.value = null)}
-      title="A character that dances already"
+      title="Character or motion?"
       titleId="character-question"
       kind="character-question"
     >
