@@ -101,7 +101,7 @@ def to_onnx(model: nn.Module, name: str) -> onnx.ModelProto:
             dynamic_axes={n: {0: "B"} for n in (*inputs, *outputs)},
         )
     proto = _fold_constants(file.getvalue())
-    shapes = {"pose": [MOTION_SIZE], "code": [], "curves": [99, 5], "root": [2, 3]}
+    shapes = {"pose": [MOTION_SIZE], "code": [getattr(model.config, "parts", 1)], "curves": [99, 5], "root": [2, 3]}
     for output in proto.graph.output:
         dims = output.type.tensor_type.shape.dim
         for dim, size in zip(dims[1:], shapes[output.name]):
@@ -131,8 +131,11 @@ def golden_inputs(model: nn.Module, name: str) -> dict[str, Tensor]:
         with torch.no_grad():
             model(*(inputs[n] for n in suggest.INPUTS))
         hook.remove()
-        top = (scores[0] / inputs["temperature"][:, None] + inputs["noise"]).topk(2).values
-        gap = float((top[:, 0] - top[:, 1]).min())
+        gap, size = float("inf"), CODES // model.config.parts
+        for part, logits in enumerate(scores):
+            own = slice(part * size, (part + 1) * size)
+            top = (logits[:, own] / inputs["temperature"][:, None] + inputs["noise"][:, own]).topk(2).values
+            gap = min(gap, float((top[:, 0] - top[:, 1]).min()))
         if gap > widest:
             best, widest = inputs, gap
     return best

@@ -239,7 +239,7 @@ class Suggester(nn.Module):
         temperature: Tensor,
         noise: Tensor,
     ) -> tuple[Tensor, Tensor]:
-        """One step: see INPUTS; poses [B, 16, 147] in the world -> (pose [B, 147] in the world, code [B] of the last part)."""
+        """One step: see INPUTS; poses [B, 16, 147] in the world -> (pose [B, 147] in the world, codes [B, parts])."""
         mask = pose_mask[:, :, None]
         stand = torch.zeros(MOTION_SIZE, device=poses.device)
         stand[0:ROTATION_SIZE:6] = 1
@@ -266,10 +266,10 @@ class Suggester(nn.Module):
                 weighed = self.scores(x, codes)[:, 0] / temperature[:, None] + noise[:, part * size : (part + 1) * size]
                 codes.append(weighed.argmax(-1)[:, None] + part * size)
             columns, moved = self.finish(x, torch.stack(codes, -1))
-            code = codes[-1][:, 0].to(poses)
+            code = torch.cat(codes, -1).to(poses)
         else:
             columns, moved = self.finish(x, (noise * temperature[:, None])[:, None])
-            code = temperature * 0
+            code = temperature[:, None] * 0
         columns, moved = columns[:, 0], moved[:, 0]
         turn_sine, turn_cosine, height, side, forward = moved.split(1, -1)
         known = mask[:, -1]

@@ -50,10 +50,12 @@ def settled(model, name: str):
 @pytest.fixture(scope="module")
 def small_suggest() -> Suggester:
     torch.manual_seed(0)
-    model = Suggester(SuggestConfig(net=SMALL, code_width=8))
-    poses = synthetic_motion(CODES, torch.Generator().manual_seed(2), 0.6)
-    model.code_rotations.copy_(poses[:, :ROTATION_SIZE])
-    model.code_steps.copy_(torch.tensor([0.0, 1, 0.95, 0.02, 0.05]).repeat(CODES, 1))
+    model = Suggester(SuggestConfig(net=SMALL, code_width=8, parts=2))
+    poses = synthetic_motion(CODES, torch.Generator().manual_seed(2), 0.6)[:, :ROTATION_SIZE].unflatten(1, (24, 6))
+    for part, members in enumerate(part_joints(2)):
+        own = slice(part * CODES // 2, (part + 1) * CODES // 2)
+        model.code_rotations.unflatten(1, (24, 6))[own, members] = poses[own, members]
+    model.code_steps[: CODES // 2] = torch.tensor([0.0, 1, 0.95, 0.02, 0.05])
     return settled(model, "suggest")
 
 
@@ -156,7 +158,7 @@ def test_the_suggested_pose_turns_with_the_dancer(small_suggest):
     with torch.no_grad():
         ours, code = small_suggest(*(inputs[n] for n in suggest.INPUTS))
         theirs, same = small_suggest(*({**inputs, "poses": moved}[n] for n in suggest.INPUTS))
-    assert code == same
+    assert torch.equal(code, same) and code.shape == (1, 2)
     expected = ours[:, ROTATION_SIZE:] @ turn.T + torch.tensor([1.0, 0.0, -2.0])
     assert torch.allclose(theirs[:, ROTATION_SIZE:], expected, atol=1e-4)
     assert torch.allclose(theirs[:, 6:ROTATION_SIZE], ours[:, 6:ROTATION_SIZE], atol=1e-4)
@@ -166,9 +168,12 @@ def test_noise_forbids_codes(small_suggest):
     inputs = made_up_inputs("suggest", 4, 3)
     with torch.no_grad():
         code = small_suggest(*(inputs[n] for n in suggest.INPUTS))[1].long()
-        inputs["noise"][torch.arange(4), code] = -1e9
+        inputs["noise"][torch.arange(4)[:, None], code] = -1e9
         other = small_suggest(*(inputs[n] for n in suggest.INPUTS))[1].long()
     assert (code != other).all()
+    # Legs from the first half of the codes, what is above them from the second.
+    for found in (code, other):
+        assert (found[:, 0] < CODES // 2).all() and (found[:, 1] >= CODES // 2).all()
 
 
 def test_untrained_curves_are_the_slerp():
@@ -263,7 +268,7 @@ def test_onnx_answers_like_torch(name, small_suggest, small_curves):
             made = run((proto if form == "fp32" else compress(proto, form, name)).SerializeToString(), name, given)
             for output in outputs:
                 if form == "fp32" or output != "code":
-                    same = slice(None) if name == "curves" else np.flatnonzero(made["code"] == expected["code"].numpy())
+                    same = slice(None) if name == "curves" else np.flatnonzero((made["code"] == expected["code"].numpy()).all(-1))
                     assert np.abs(made[output][same] - expected[output].numpy()[same]).max(initial=0) <= tolerance, (form, output)
 
 

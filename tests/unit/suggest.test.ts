@@ -75,6 +75,27 @@ function fakeNetwork(steps: StepInputs[] = [], angle = (code: number) => -1.2 + 
   };
 }
 
+/** A network with codes for two parts: legs bow by the first half's code, the arm is raised by the second half's. */
+function partsNetwork(steps: StepInputs[] = [], bow = (code: number) => code / 300): StepRunner {
+  return async (inputs) => {
+    steps.push(inputs);
+    const batch = inputs.noise.dims[0];
+    const poses = new Float32Array(batch * ROW_SIZE);
+    const codes = new Float32Array(batch * 2);
+    for (let i = 0; i < batch; i++) {
+      for (const part of [0, 1]) {
+        const noise = inputs.noise.data.subarray(i * 512 + part * 256, i * 512 + (part + 1) * 256);
+        codes[i * 2 + part] = part * 256 + noise.indexOf(Math.max(...noise));
+      }
+      const both = pose(bow(codes[i * 2 + 1]));
+      both[3] = bow(codes[i * 2]);
+      poses.set(quaternionsToSixD(poseToQuaternions(both)), i * ROW_SIZE);
+      poses[(i + 1) * ROW_SIZE - 2] = 0.9;
+    }
+    return { poses, codes };
+  };
+}
+
 /** The same on a figure that leans another way on each of three beats, so that no pose stands still. */
 function leaningNetwork(steps: StepInputs[] = [], angle?: (code: number) => number): StepRunner {
   const network = fakeNetwork(steps, angle);
@@ -284,6 +305,19 @@ describe('a dance that would stand still', () => {
     expect(await suggestPoses(wanted, sleepy([], 250))).toEqual(found);
   });
 
+  it('rules out the codes of every part of the body', async () => {
+    const steps: StepInputs[] = [];
+    await suggestPoses(
+      request({ density: 'half' }),
+      partsNetwork(steps, () => 0),
+    );
+    const again = steps.find(({ noise }) => noise.data.includes(FORBIDDEN))!;
+    const places = Array.from(again.noise.data).flatMap((v, i) => (v === FORBIDDEN ? [i] : []));
+    expect(places).toHaveLength(2);
+    expect(places[0]).toBeLessThan(256);
+    expect(places[1]).toBeGreaterThanOrEqual(256);
+  });
+
   it('asks less of poses that are close in time', async () => {
     const quick: BeatGrid = { ...grid, beats: beats.map((time) => time / 2), downbeats: [] };
     const slight = (steps: StepInputs[]): StepRunner => {
@@ -423,6 +457,27 @@ describe('alternates', () => {
     expect(forbidden).toBeGreaterThan(12);
     expect(found.length).toBe(ALTERNATES);
     expect(VISIBLE_DISTANCE).toBeGreaterThan(0);
+  });
+
+  it('forbids the codes of every part, and takes one for taken only where both are', async () => {
+    const steps: StepInputs[] = [];
+    const found = await alternatePoses(
+      request({ keyPoses: [at] }),
+      at,
+      partsNetwork(steps, () => 0),
+    );
+    expect(found).toHaveLength(ALTERNATES);
+    const batches = steps.filter(({ noise }) => noise.dims[0] > 1);
+    expect(batches).toHaveLength(3);
+    for (const [from, to] of [
+      [0, 256],
+      [256, 512],
+    ]) {
+      const forbidden = batches[2].noise.data.subarray(from, to).filter((v) => v === FORBIDDEN).length;
+      // Sixteen samples; some share a part.
+      expect(forbidden).toBeGreaterThan(12);
+      expect(forbidden).toBeLessThanOrEqual(16);
+    }
   });
 
   it('have what is on the timeline for their past, whoever made it', async () => {

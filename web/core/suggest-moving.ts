@@ -97,7 +97,7 @@ export async function stepMoving(
     const fits = neighbours ? Math.min(1, movement(pose, time, neighbours), turning(pose, time, neighbours)) : 1;
     if (!best || fits > best.fits) best = { row, fits };
     if (fits >= 1) break;
-    noise[codes[0]] = FORBIDDEN;
+    for (const code of codes) noise[code] = FORBIDDEN;
   }
   return best!.row;
 }

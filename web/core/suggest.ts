@@ -39,7 +39,10 @@ export interface SuggestedPose {
   rotations: number[];
 }
 
-/** One step of the network for as many samples as there are rows of noise. */
+/**
+ * One step of the network for as many samples as there are rows of noise. Each sample has a code for every part of the body that has
+ * codes of its own: the place in the noise that it was chosen by.
+ */
 export type StepRunner = (inputs: StepInputs) => Promise<{ poses: Float32Array; codes: Float32Array }>;
 
 /** How to follow the work. */
@@ -200,6 +203,7 @@ export async function alternatePoses(
   }
   const around = neighboursOf(key.time, others);
   const taken = new Set<number>();
+  const seen = new Set<string>();
   const candidates: number[][] = [];
   let chosen: number[][] = [];
   for (let call = 0; call < ALTERNATE_CALLS; call++) {
@@ -210,11 +214,15 @@ export async function alternatePoses(
       return numbers;
     });
     const { poses, codes: used } = await run(context.inputs(target, temperatureOf(0.5), noise));
-    used.forEach((code, i) => {
-      if (taken.has(code)) return;
-      taken.add(code);
+    const parts = used.length / noise.length;
+    for (let i = 0; i < noise.length; i++) {
+      const own = used.subarray(i * parts, (i + 1) * parts);
+      const name = own.join();
+      if (seen.has(name)) continue;
+      seen.add(name);
+      for (const code of own) taken.add(code);
       candidates.push(poseOfRow(poses.subarray(i * ROW_SIZE, (i + 1) * ROW_SIZE)));
-    });
+    }
     // Those that the body cannot turn to in time come only where there are no others.
     const [within, beyond] = [true, false].map((wanted) =>
       candidates.filter((pose) => turning(pose, key.time, around) >= 1 === wanted),
