@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { cens, chroma, chromaBank, hannWeights } from '../../web/core/chroma';
-import { FLUX_BANDS, FluxMeter, hertzToMel, melBank, melToHertz, percentile } from '../../web/core/onset';
+import { FLUX_BANDS, FluxMeter, hertzToMel, melBank, melToHertz } from '../../web/core/onset';
+import { percentile } from '../../web/core/interpolate';
 import { SpectrumAnalyser } from '../../web/core/spectrum';
 
 const RATE = 5512.5;
@@ -81,6 +82,8 @@ describe('FluxMeter', () => {
   it('takes percentiles between neighbours', () => {
     expect(percentile([3, 1, 2, 5, 4], 0.5)).toBe(3);
     expect(percentile([0, 10], 0.98)).toBeCloseTo(9.8, 10);
+    expect(percentile([5, 1, 4], 0)).toBe(1);
+    expect(percentile([5, 1, 4], 1)).toBe(5);
     expect(percentile([], 0.5)).toBe(0);
   });
 });

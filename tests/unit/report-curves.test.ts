@@ -1,14 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { degreesPerJoint } from '../../web/app/report-reference';
 import { emptyMotion } from '../../web/core/motion';
-import {
-  consistencyPerKey,
-  envelope,
-  movesOnBeats,
-  percentile,
-  tradeOffAt,
-  tradeOffStrengths,
-} from '../../web/core/report-curves';
+import { consistencyPerKey, envelope, movesOnBeats, tradeOffAt, tradeOffStrengths } from '../../web/core/report-curves';
 import { key, poseWith } from './dance';
 
 describe('consistency of each key pose', () => {
@@ -90,14 +83,5 @@ describe('the envelope of a curve', () => {
       [NaN, NaN],
     ]);
     expect(columns(envelope([], 0, 1, 1))).toEqual([[NaN, NaN]]);
-  });
-});
-
-describe('a percentile', () => {
-  it('is by nearest rank', () => {
-    expect(percentile([5, 1, 4, 2, 3], 0.5)).toBe(3);
-    expect(percentile([5, 1, 4, 2, 3], 1)).toBe(5);
-    expect(percentile([5, 1, 4, 2, 3], 0)).toBe(1);
-    expect(percentile([], 0.5)).toBe(0);
   });
 });

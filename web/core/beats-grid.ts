@@ -4,7 +4,7 @@ import { followTempo, normaliseEnvelope, periodAt, trackBeats, type TempoCurve }
 import { preferFaster } from './beats-level';
 import { isBetweenBeats } from './beats-offbeat';
 import { PITCH_CLASSES } from './chroma';
-import { percentile } from './onset';
+import { percentile } from './interpolate';
 import type { BeatGrid } from './types';
 
 /** Decibels below the loud parts of a song at which it counts as silent, and as fading where no onset is left. */

@@ -2,7 +2,7 @@
  * Corrections of a beat grid. Every function gives a new grid that a document may hold: beats ascending and inside the song,
  * downbeats among them. Times are seconds, rounded to microseconds so that an edit and its opposite give the same numbers again.
  */
-import { percentile } from './onset';
+import { percentile } from './interpolate';
 import { lowerBound, nearestIndex } from './snap';
 import type { BeatGrid } from './types';
 

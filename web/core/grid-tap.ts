@@ -1,6 +1,6 @@
 /** Tap tempo: from the moments that somebody tapped to a beat grid of the whole song. */
 import { barred, beatPosition, evenGrid, firstBar, GRID_TEMPO, tidy, timeAtBeat } from './grid-edit';
-import { percentile } from './onset';
+import { percentile } from './interpolate';
 import type { BeatGrid } from './types';
 
 /** Fewer taps than this tell no tempo. */

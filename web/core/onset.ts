@@ -109,17 +109,3 @@ export class FluxMeter {
     return out;
   }
 }
-
-/**
- * @param values any order
- * @param share 0..1
- * @returns the value below which that share of the values lies (linear interpolation); 0 for none
- */
-export function percentile(values: ArrayLike<number>, share: number): number {
-  const sorted = Float64Array.from(values).sort();
-  if (sorted.length === 0) return 0;
-  const position = share * (sorted.length - 1);
-  const below = Math.floor(position);
-  const above = Math.min(sorted.length - 1, below + 1);
-  return sorted[below] + (sorted[above] - sorted[below]) * (position - below);
-}

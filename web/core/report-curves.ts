@@ -113,9 +113,3 @@ export function envelope(values: ArrayLike<number>, first: number, perColumn: nu
   }
   return { low, high };
 }
-
-/** The value below which `share` of the values lie (nearest rank); 0 for none. */
-export function percentile(values: ArrayLike<number>, share: number): number {
-  const sorted = Float32Array.from(values).sort();
-  return sorted.length ? sorted[Math.min(sorted.length - 1, Math.max(0, Math.ceil(share * sorted.length) - 1))] : 0;
-}
