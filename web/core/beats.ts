@@ -102,6 +102,7 @@ function comb(correlation: ArrayLike<number>, lag: number): number {
 /**
  * Follows the tempo through the song: local scores, then the best path (Viterbi) that changes little.
  * @param envelopes normalised onset strengths (of the whole and of parts of the sound), equally long
+ * @param rate their frames per second
  */
 export function followTempo(envelopes: readonly Float64Array[], rate: number): TempoCurve {
   const candidates = tempoCandidates();

@@ -1,6 +1,7 @@
 /** Chroma: Meyda's filter bank on our spectra, then CENS post-processing (Mueller, Kurth & Clausen 2005). */
 import Meyda from 'meyda';
 
+/** Semitones of an octave, C first. */
 export const PITCH_CLASSES = 12;
 
 /** Shares of a frame's energy above which a pitch class gets one more quarter: logarithmic loudness steps of CENS. */
@@ -67,7 +68,7 @@ export function chroma(bank: ChromaBank, amplitudes: Float32Array, out: Float32A
   return out;
 }
 
-/** Odd-length Hann window of sum 1 that reaches zero just outside its ends. */
+/** Odd-length Hann window of sum 1 that reaches zero just outside its ends; `length` in frames. */
 export function hannWeights(length: number): Float64Array {
   const weights = Float64Array.from({ length }, (_, i) => 0.5 - 0.5 * Math.cos((2 * Math.PI * (i + 1)) / (length + 1)));
   const sum = weights.reduce((a, b) => a + b, 0);

@@ -39,7 +39,12 @@ export function jumpHeights(ground: Float64Array, pelvis: Float64Array): Float64
   return heights;
 }
 
-/** Pelvis heights that follow the floor and the jumps without kinks where the support changes. */
+/**
+ * Pelvis heights that follow the floor and the jumps without kinks where the support changes.
+ * @param ground the pelvis's height with the lowest point of the body on the floor, one a frame, metres
+ * @param raw the pelvis's height as danced, one a frame, metres
+ * @returns one a frame, metres
+ */
 export function pelvisHeights(ground: Float64Array, raw: Float64Array): Float64Array {
   const jumps = jumpHeights(ground, raw);
   return gaussianSmooth(

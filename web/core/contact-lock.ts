@@ -107,7 +107,10 @@ const SWING = { slow: 0.25, fast: 0.6, height: 0.065 };
 
 /**
  * Lifts a foot that would drag over the floor while the other one stands, adding to its offsets in place: a step instead of a slide.
- * @param otherPlants when the other foot stands
+ * @param path where the foot is, frames x 3, metres
+ * @param offsets how far it is moved from there, frames x 3, metres
+ * @param plants when it stands, frames
+ * @param otherPlants when the other foot stands, frames
  */
 export function liftSwing(
   path: Float64Array,

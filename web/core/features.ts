@@ -165,7 +165,9 @@ export class FeatureExtractor {
 }
 
 /**
+ * Analyses a song in one go.
  * @param pcm mono samples of a whole song
+ * @param sampleRate samples per second
  * @returns the same as a FeatureExtractor that got the song in chunks
  */
 export function analyse(pcm: Float32Array, sampleRate: number): Analysis {

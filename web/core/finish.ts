@@ -98,6 +98,8 @@ export function finishDance(
  * Lays a range made anew onto a finished dance. Rotations and places outside the range stay as they are.
  * @param below left as it is
  * @param keys of the whole dance
+ * @param strength key strength, 0..1
+ * @returns the whole dance
  */
 export function finishLayer(
   below: Motion,

@@ -60,12 +60,12 @@ export function createPlacedBody(): PlacedBody {
   };
 }
 
-/** Turns a joint in the world and everything that hangs on it; the turn comes after the joint's present one. */
+/** Turns a joint in the world (x y z w) and everything that hangs on it, in place; the turn comes after the joint's present one. */
 export function turnInWorld(body: PlacedBody, joint: number, turn: Numbers): void {
   setWorldTurn(body, joint, multiply(turn, body.turns.subarray(joint * 4, joint * 4 + 4)));
 }
 
-/** Gives a joint a world rotation, as far as its limits let it. */
+/** Gives a joint a world rotation (x y z w), as far as its limits let it, in place. */
 export function setWorldTurn(body: PlacedBody, joint: number, turn: Numbers): void {
   const parent = PARENTS[joint];
   const local =
@@ -145,8 +145,9 @@ export function fitLimb(body: PlacedBody, { upper, middle, end, hinge }: Limb, t
 
 /**
  * Swings the elbow or knee about the line from shoulder to wrist (hip to ankle) towards a point, as far as the limits let it; the
- * end of the limb stays where it is and keeps its rotation.
- * @param part how much of the way
+ * end of the limb stays where it is and keeps its rotation. In place.
+ * @param target world position, metres
+ * @param part how much of the way, 0..1
  */
 export function swivelLimb(body: PlacedBody, { upper, middle, end }: Limb, target: Numbers, part = 1): void {
   const a = pointOf(body.joints, upper);

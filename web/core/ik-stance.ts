@@ -79,7 +79,8 @@ export function stanceOf({ joints }: PlacedBody, pins: readonly IkGoal[]): Stanc
 /**
  * Lets the pelvis give way where ankles do not bend far enough to keep the feet flat, as in a squat the seat goes back, and, where the
  * pelvis itself is dragged, leans the trunk against the weight that this moves.
- * @param weight where the centre of mass was, or null where the trunk has goals of its own
+ * @param body changed in place
+ * @param weight where the centre of mass was, metres, or null where the trunk has goals of its own
  * @returns true when all is well
  */
 export function giveWay(body: PlacedBody, feet: readonly Stance[], weight: Numbers | null): boolean {

@@ -152,7 +152,7 @@ function join({ axis }: JointLimit, u: number, v: number, twist: number): number
   return q;
 }
 
-/** Rotations spread over a joint's range: half-way and nearly all the way out to each corner of its swing, with five twists each. */
+/** Rotations spread over a joint's range: half-way and nearly all the way out to each corner of its swing, with five twists each; quaternions x y z w. */
 export function directions(joint: number): number[][] {
   const limit = JOINT_LIMITS[joint];
   if (!limit) return [];

@@ -18,6 +18,8 @@ export interface LocalFrame {
 /**
  * Direction that a pelvis faces on the floor: atan2(f.x, f.z) for f = R (0, 0, 1). Where f is nearly vertical (lying, or bent double)
  * the pelvis's up axis says it: f = -R (0, 1, 0) sign(f.y).
+ * @param pelvis world rotation, x y z w
+ * @returns radians; 0 faces +Z, positive turns to the left
  */
 export function headingOf(pelvis: Numbers): number {
   let f = rotateVector(pelvis, [0, 0, 1]);

@@ -43,7 +43,11 @@ function mixFrame(target: Motion, t: number, source: Motion, s: number, share: n
   }
 }
 
-/** Blends a range into the dance around it; its way over the floor is brought to where the old dance goes on. */
+/**
+ * Blends a range into the dance around it; its way over the floor is brought to where the old dance goes on.
+ * @param made the new dance, changed in place; only its frames [from, to) are new
+ * @param previous the dance before, equally long
+ */
 export function joinRange(made: Motion, previous: Motion, from: number, to: number): void {
   const blend = Math.min(RANGE_BLEND, Math.floor((to - from) / 3));
   if (to < previous.frames) {

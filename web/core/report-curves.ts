@@ -31,7 +31,7 @@ export interface TradeOffPoint {
   jerk: number;
 }
 
-/** One point of consistency against smoothness: the dance finished at a strength, without the network. */
+/** One point of consistency against smoothness: the dance finished at a key strength 0..1, without the network. */
 export function tradeOffPoint(dance: UncorrectedDance, keyPoses: readonly KeyPose[], strength: number): TradeOffPoint {
   const danced = dancedPart(finishDance(dance, keyPoses, strength), keyPoses, partOf(dance));
   return { strength, error: consistencyError(danced.motion, danced.keyPoses), jerk: meanJerk(danced.motion) };

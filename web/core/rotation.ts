@@ -4,7 +4,9 @@
  * Every function reads any array-like, writes `out` when it is given (it may be one of the inputs) and returns it.
  */
 
+/** What is read. */
 export type Numbers = ArrayLike<number>;
+/** What can be written. */
 export type Writable = number[] | Float32Array | Float64Array;
 
 const JOINTS_IN_POSE = 24;

@@ -2,11 +2,13 @@
 import type { Numbers } from './rotation';
 import { spec } from './spec';
 
+/** Names of the 24 joints, in SMPL order. */
 export const JOINTS: readonly string[] = spec.skeleton.joints;
 /** Parent of each joint; -1 for the pelvis. A parent always comes before its children. */
 export const PARENTS: readonly number[] = spec.skeleton.parents;
 /** Rest offset of each joint from its parent, metres. */
 export const OFFSETS: readonly (readonly [number, number, number])[] = spec.skeleton.offsets;
+/** How many they are. */
 export const JOINT_COUNT: number = JOINTS.length;
 
 /**

@@ -63,6 +63,7 @@ export interface Spec {
   };
 }
 
+/** The contract itself. */
 export const spec: Spec = json as unknown as Spec;
 
 /** JSON with the keys of every object sorted and no spaces: the same text as Python's `json.dumps(sort_keys=True, separators=(',', ':'))`. */

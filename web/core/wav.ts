@@ -64,7 +64,10 @@ function sampleReader(view: DataView, format: number, bits: number): ((at: numbe
   return null;
 }
 
-/** @returns the mean of the channels */
+/**
+ * @param channels samples of each channel, equally long
+ * @returns the mean of the channels; the channel itself where there is one only
+ */
 export function mixToMono(channels: readonly Float32Array[]): Float32Array {
   if (channels.length === 1) return channels[0];
   const mono = new Float32Array(channels[0]?.length ?? 0);

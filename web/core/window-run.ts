@@ -16,7 +16,12 @@ const { seedFrames } = spec.model;
 /** Frames that the network goes on past the song's end, so that the last beats have something to aim for. */
 export const TAIL = spec.fps;
 
-/** All that is fed to the network: the user's keys and the fillers, ascending. */
+/**
+ * All that is fed to the network: the user's keys and the fillers, ascending.
+ * @param from first frame of what is danced
+ * @param to the frame after its last
+ * @param start where the dance goes on from: a frame, and the heading there in radians
+ */
 export function networkKeys(
   request: GenerationRequest,
   keys: FrameKey[],
