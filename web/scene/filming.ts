@@ -6,8 +6,7 @@ import type { AvatarFigure, AvatarSource } from './avatar';
 import { Figure } from './figure';
 import { loadFigure } from './figure-asset';
 import { applyLook } from './filming-look';
-import { createBackdrop, Floor } from './floor';
-import { Lights } from './lights';
+import { Surroundings } from './surroundings';
 
 /** One picture. */
 export interface Take {
@@ -26,9 +25,7 @@ export interface Take {
 /** Figure, floor, lamps and a camera; made of the same parts as the stage. */
 export class FilmSet {
   private readonly scene = new Scene();
-  private readonly floor = new Floor();
-  private readonly backdrop = createBackdrop();
-  private readonly lights = new Lights(true);
+  private readonly surroundings: Surroundings;
   private readonly camera: PerspectiveCamera;
   private before = NaN;
 
@@ -42,8 +39,9 @@ export class FilmSet {
     this.camera = new PerspectiveCamera(fieldOfView, picture.width / picture.height, 0.05, 120);
     // Once for a picture, however many strips it has.
     renderer.shadowMap.autoUpdate = false;
-    this.scene.add('mesh' in dancer ? dancer.mesh : dancer.object, this.lights.group);
-    if (onStage) this.scene.add(this.floor.mesh, this.backdrop);
+    this.surroundings = new Surroundings(onStage);
+    this.surroundings.fit(this.dancerSize.size);
+    this.scene.add('mesh' in dancer ? dancer.mesh : dancer.object, this.surroundings.group);
   }
 
   /**
@@ -70,7 +68,6 @@ export class FilmSet {
     const onStage = background === 'stage';
     const dancer = avatar ? await (await import('./avatar')).openAvatar(avatar) : await dressed(look);
     const set = new FilmSet(renderer, dancer, { width, height: whole }, fieldOfView, onStage);
-    for (const part of [set.lights, set.floor]) part.fit(set.dancerSize.size);
     if (background.startsWith('#')) set.scene.background = new Color(background);
     await renderer.compileAsync(set.scene, set.camera);
     return set;
@@ -96,11 +93,8 @@ export class FilmSet {
     this.before = time;
     this.camera.position.fromArray(Array.from(position));
     this.camera.lookAt(target[0], target[1], target[2]);
-    this.floor.follow(centre[0], centre[1]);
-    this.floor.glow = glow;
-    this.floor.shade(this.dancer.pose.joints);
-    this.lights.follow(centre[0], centre[1]);
-    this.backdrop.position.copy(this.camera.position);
+    this.surroundings.arrange(centre[0], centre[1], this.camera, this.dancer.pose.joints);
+    this.surroundings.shine(glow);
     this.renderer.shadowMap.needsUpdate = true;
   }
 
@@ -124,9 +118,7 @@ export class FilmSet {
   /** Frees everything. */
   dispose(): void {
     this.dancer.dispose();
-    this.floor.dispose();
-    this.lights.dispose();
-    this.backdrop.geometry.dispose();
+    this.surroundings.dispose();
     this.renderer.dispose();
     this.renderer.forceContextLoss();
   }

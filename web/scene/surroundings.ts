@@ -10,8 +10,10 @@ export class Surroundings {
   private readonly backdrop = createBackdrop();
   private glow = 0;
 
-  constructor() {
-    this.group.add(this.backdrop, this.floor.mesh, this.lights.group);
+  /** @param onStage false for the lamps alone */
+  constructor(onStage = true) {
+    this.group.add(this.lights.group);
+    if (onStage) this.group.add(this.backdrop, this.floor.mesh);
   }
 
   /** Makes shadows fit a dancer so many times our figure's height. */
@@ -31,6 +33,11 @@ export class Surroundings {
     this.lights.follow(x, z);
     this.backdrop.position.copy(camera.position);
     this.floor.shade(joints);
+  }
+
+  /** The floor glows as it does at one moment, 0..1. */
+  shine(glow: number): void {
+    this.floor.glow = glow;
   }
 
   /** A glow on the floor that fades by itself; strength 0..1. */
