@@ -149,6 +149,10 @@ describe('suggesting key poses', () => {
     expect(asked.map(({ seed }) => seed)).toEqual([asked[0].seed, asked[0].seed + 1]);
     const notice = store.state.notices.value.at(-1)!;
     expect(notice.text).toMatch(/^\d+ key poses suggested/);
+    // Whatever the number, only the last suggestion is spoken of.
+    store.chooseSuggestion({ density: 'bar' });
+    await store.suggestForPage();
+    expect(store.state.notices.value.map(({ text }) => text)).toEqual(['5 key poses suggested.']);
     notice.action!.run();
     await vi.waitFor(() => expect(store.state.dance.value?.kind).toBe('generated'));
     const api = createApi(store, Promise.resolve());

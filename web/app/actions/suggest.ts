@@ -32,6 +32,8 @@ export interface SuggestCall {
 
 const DENSITIES: readonly Density[] = ['beat', 'half', 'bar'];
 const LABEL = 'Suggest key poses';
+/** What the notice of a suggestion offers. */
+const NEXT = 'Generate';
 /** Suggestions of this many key poses are remembered with their alternates. */
 const KEPT_ALTERNATES = 500;
 
@@ -230,6 +232,8 @@ export function suggestActions(context: Context, generate: () => Promise<void>) 
     async suggestForPage(): Promise<void> {
       const { density, place, variation, style } = state.suggestChoice.value;
       const range = place === 'range' ? state.loop.value : null;
+      // What was said of the suggestion before is over: several of them would hide the stage of a phone.
+      state.notices.value = state.notices.value.filter(({ action }) => action?.label !== NEXT);
       try {
         const found = await suggestKeyPoses({
           density,
@@ -241,7 +245,7 @@ export function suggestActions(context: Context, generate: () => Promise<void>) 
         });
         presses += 1;
         const text = `${found.length === 1 ? 'One key pose' : `${found.length} key poses`} suggested.`;
-        context.notify('info', text, { label: 'Generate the dance', run: () => void generate() });
+        context.notify('info', text, { label: NEXT, run: () => void generate() });
         context.announce(text);
       } catch (error) {
         if (!isAbort(error)) context.notify('error', messageOf(error));
