@@ -42,7 +42,18 @@ import './style-contrast.css';
 const asked = new URLSearchParams(location.search).get('backend');
 const forcedBackend: Backend | undefined = asked === 'wasm' || asked === 'webgpu' ? asked : undefined;
 
-const { embedded, origin } = embedWish(location.search);
+const { embedded, origin } = wish();
+
+/** How the page shall show itself; a frame that cannot says why instead of staying empty. */
+function wish() {
+  try {
+    return embedWish(location.search);
+  } catch (error) {
+    document.getElementById('app')!.textContent = (error as Error).message;
+    throw error;
+  }
+}
+
 const tabs = embedded ? undefined : createTabs();
 const store = createStore(
   {

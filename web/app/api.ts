@@ -76,6 +76,21 @@ declare global {
   }
 }
 
+/**
+ * The options of a call from a script or a message, which may be anything.
+ * @throws Error where they, or the stretch that they name, are none
+ */
+function checked<T extends object>(method: string, options: T): T {
+  if (typeof options !== 'object' || options === null || Array.isArray(options)) {
+    throw new Error(`The options of ${method} must be an object, or left out.`);
+  }
+  const { range } = options as { range?: unknown };
+  if (range === undefined || typeof range === 'string') return options;
+  const { start, end } = (range ?? {}) as { start?: unknown; end?: unknown };
+  if (typeof start !== 'number' || typeof end !== 'number') throw new Error('range must be {start, end} in seconds.');
+  return options;
+}
+
 /** Makes the API of a page. */
 export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
   const { state } = store;
@@ -103,10 +118,10 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
     },
     setKeyPoses: (keys) => store.setKeyPoses(keys),
     async suggestKeyPoses(options = {}) {
-      const found = await store.suggestKeyPoses(options);
+      const found = await store.suggestKeyPoses(checked('suggestKeyPoses', options));
       return found.map(({ time, rotations }) => ({ time, rotations: [...rotations] }));
     },
-    generate: (options = {}) => store.generate(options),
+    generate: async (options = {}) => store.generate(checked('generate', options)),
     motion() {
       const motion = onStage();
       return { fps: motion.fps, rotations: motionToAxisAngle(motion), root: motion.root.slice() };
@@ -116,6 +131,7 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
       return store.reportNow();
     },
     async exportAs(format, options = {}) {
+      checked('exportAs', options);
       if (format === 'project') return store.projectFile(options.song === true);
       if ((MOTION_FORMATS as readonly string[]).includes(format)) {
         return store.exportMotion(format as MotionFormat, options);
@@ -125,11 +141,11 @@ export function createApi(store: Store, ready: Promise<void>): PosebeatApi {
         `There is no export format "${String(format)}": use bvh, glb, fbx, npz, json, avatar, curves or project.`,
       );
     },
-    exportVideo: async (options = {}) => store.exportVideo(options),
-    exportPicture: (options = {}) => store.exportPicture(options),
-    exportKeyPoses: (options = {}) => store.exportKeyPoses(options),
-    exportLoop: (options = {}) => store.exportLoop(options),
-    setAvatar: async (file, options) => store.setAvatar(file, options),
+    exportVideo: async (options = {}) => store.exportVideo(checked('exportVideo', options)),
+    exportPicture: async (options = {}) => store.exportPicture(checked('exportPicture', options)),
+    exportKeyPoses: async (options = {}) => store.exportKeyPoses(checked('exportKeyPoses', options)),
+    exportLoop: async (options = {}) => store.exportLoop(checked('exportLoop', options)),
+    setAvatar: async (file, options = {}) => store.setAvatar(file, checked('setAvatar', options)),
     avatar() {
       const shown = state.avatar.value;
       return shown && { name: shown.name, height: shown.figure.height, joints: shown.figure.pose.joints.slice() };

@@ -1,16 +1,16 @@
 /** The page's own address, where it is a link to a dance. */
 import { effect } from '@preact/signals';
-import { isLink } from '../core/formats/share-link';
+import { isLink, isNewerLink } from '../core/formats/share-link';
 import type { Store } from './store';
 
 /**
  * Opens links that come while the page is open, and takes the link out of the address as soon as it is no longer what the page shows:
- * a reload then brings the visitor's own changes back.
+ * a reload then brings the visitor's own changes back. A link that only a newer page can read stays: reloading is what its message asks for.
  */
 export function followAddress(store: Store, page: Window): void {
   const clear = () => {
     const { hash, pathname, search } = page.location;
-    if (isLink(hash)) page.history.replaceState(page.history.state, '', pathname + search);
+    if (isLink(hash) && !isNewerLink(hash)) page.history.replaceState(page.history.state, '', pathname + search);
   };
   page.addEventListener('hashchange', () => {
     const { hash } = page.location;

@@ -1,6 +1,6 @@
 import { useSignal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { openFile } from './files';
+import { openDropped } from './files';
 import { Icon } from './Icon';
 import { useStore } from './store-context';
 
@@ -23,8 +23,7 @@ export function DropOverlay() {
       if (!hasFile(event)) return;
       event.preventDefault();
       over.value = false;
-      const file = event.dataTransfer?.files[0];
-      if (file) openFile(store, file);
+      openDropped(store, [...(event.dataTransfer?.files ?? [])]);
     };
     window.addEventListener('dragover', onOver);
     window.addEventListener('dragleave', onLeave);

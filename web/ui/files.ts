@@ -16,6 +16,14 @@ export function openFile(store: Store, file: File): void {
   else void store.dropSong(file);
 }
 
+/** Opens the first of the files that were dropped together, and says so where there are more. */
+export function openDropped(store: Store, files: readonly File[]): void {
+  if (files.length === 0) return;
+  openFile(store, files[0]);
+  if (files.length === 1) return;
+  store.notify('info', `Only “${files[0].name}” of these ${files.length} files is opened: drop one at a time.`);
+}
+
 /** JSON of ours is a project, poses or a dance: what it is stands inside. */
 async function openJson(store: Store, file: File): Promise<void> {
   const kind = await jsonKindOf(file).catch(() => null);

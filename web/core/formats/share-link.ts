@@ -46,6 +46,11 @@ export function isLink(hash: string): boolean {
   return /^#?d=/.test(hash);
 }
 
+/** True for a link that only a newer page can read. */
+export function isNewerLink(hash: string): boolean {
+  return Number(LINK.exec(hash)?.[1] ?? 0) > VERSION;
+}
+
 /**
  * Writes a project as the end of an address, `#` included.
  *
@@ -80,7 +85,7 @@ export function readLink(hash: string): SharedProject {
   }
   if (!found) throw damaged();
   const version = Number(found[1]);
-  if (version > VERSION) {
+  if (isNewerLink(hash)) {
     throw new Error('This link was made by a newer Posebeat: reload the page to get the newest version.');
   }
   if (version < 1) throw damaged();
