@@ -41,4 +41,12 @@ describe('the card of a step', () => {
     expect(free(place, chip)).toBe(true);
     expect(inside(place)).toBe(true);
   });
+
+  it('leaves the welcome free where getting out of the way of one part would cover another', () => {
+    const high = box(0, 50, 1120, 544);
+    const parts = [box(32, 318, 340, 68), box(32, 462, 340, 98)];
+    const place = placeCard(box(0, 0, 296, 144), box(60, 598, 44, 44), high, parts);
+    expect(place.top).toBe(162);
+    expect(place.top + 144).toBeLessThan(parts[0].top);
+  });
 });

@@ -65,7 +65,7 @@ export function tourActions(context: Context) {
     stop = () => undefined;
     if (step >= TOUR_STEPS) {
       end();
-      context.notify('info', 'That is all it takes. Press H to see these steps again, or ? for all the keys.');
+      context.notify('info', 'That is all it takes. Help (?) has these steps again, and all the keys.');
       return;
     }
     state.tour.value = step;

@@ -89,14 +89,14 @@ function Card({ index }: { index: number }) {
   useLayoutEffect(update, [index, generation.value.status, ...layout]);
   useEffect(() => {
     const observer = new ResizeObserver(update);
-    for (const element of document.querySelectorAll('.stage, .inspector, .transport, .timeline'))
+    for (const element of document.querySelectorAll(['.stage, .inspector, .transport, .timeline', ...anchors].join()))
       observer.observe(element);
     window.addEventListener('resize', update);
     return () => {
       observer.disconnect();
       window.removeEventListener('resize', update);
     };
-  }, [index, ...layout]);
+  }, [index, generation.value.status, ...layout]);
   useEffect(() => store.announce(`Step ${index + 1} of ${TOUR_STEPS}: ${title}. ${text}`), [index]);
 
   const at = place.value;

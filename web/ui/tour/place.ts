@@ -59,7 +59,8 @@ export function placeCard(card: Box, anchor: Box, stage: Box, avoid: readonly Bo
     side = 'bottom';
     top = Math.max(stage.top + GAP, anchor.top - GAP - card.height);
   }
-  for (const box of avoid) {
+  // Moving away from one may bring it onto another that was passed already.
+  for (const box of [...avoid, ...avoid]) {
     if (!overlap({ left, top, width: card.width, height: card.height }, box)) continue;
     // Upwards from what lies at the stage's foot, downwards from what lies at its head.
     top =
