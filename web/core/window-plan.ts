@@ -74,8 +74,9 @@ export function musicRows(features: Features, start: number, frames: number): Fl
 
 /**
  * The inputs of one window.
- * @param dance frames before the window's start are the seed
+ * @param seed the frames of the dance just before the window, in the world
  * @param keys ascending; those outside the window are left out
+ * @param frame the local frame that the network sees it in
  */
 export function windowInputs(
   span: WindowSpan,
