@@ -136,6 +136,30 @@ describe('palette', () => {
     }
   });
 
+  it('shows a colour between two of its own as a pattern that stands still, and its own as they are', () => {
+    const palette = new GifPalette();
+    const [dark, light] = [
+      [40, 40, 48],
+      [52, 52, 60],
+    ];
+    const flat = (colour: number[]) => picture(Array.from({ length: 64 }, () => colour));
+    palette.count(flat(dark));
+    palette.count(flat(light));
+    palette.choose(255);
+    const shown = (colour: number[]) => {
+      const out = new Uint8Array(64);
+      palette.indices(flat(colour), 8, out);
+      return out;
+    };
+    expect(new Set(shown(dark)).size).toBe(1);
+    expect(new Set(shown(light)).size).toBe(1);
+    const between = shown([48, 48, 56]);
+    const share = between.filter((index) => index === shown(light)[0]).length / between.length;
+    expect(Math.abs(share - 0.5)).toBeLessThan(0.2);
+    // The same in every 4 x 4.
+    between.forEach((index, i) => expect(index).toBe(between[((i >> 3) & 3) * 8 + (i & 3)]));
+  });
+
   it('stands for many colours with at most so many, none of them far off', () => {
     const palette = new GifPalette();
     const values = noise(30_000, 256, 4);

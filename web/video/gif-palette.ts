@@ -6,6 +6,10 @@ const SHIFT = 8 - BITS;
 const LEVELS = 1 << BITS;
 const BINS = LEVELS ** 3;
 
+/** Thresholds of ordered dithering, 4 x 4 (Bayer 1973), and by how many levels they move a colour: as far as those of a calm ground lie apart. */
+const BAYER = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5].map((rank) => (rank + 0.5) / 16 - 0.5);
+const DITHER = 6;
+
 const binOf = (r: number, g: number, b: number) => ((r >> SHIFT) << (2 * BITS)) | ((g >> SHIFT) << BITS) | (b >> SHIFT);
 
 /** Colours of a box of the histogram. */
@@ -67,6 +71,19 @@ export class GifPalette {
     }
     this.nearest![bin] = best;
     return best;
+  }
+
+  /**
+   * The numbers of a picture's colours. Slow changes of colour become patterns instead of bands; they stand still, so what does not move
+   * stays as it is from picture to picture.
+   * @param pixels RGBA, `width` to a row
+   */
+  indices(pixels: ArrayLike<number>, width: number, out: Uint8Array): void {
+    for (let i = 0; i < out.length; i++) {
+      const moved = DITHER * BAYER[((Math.floor(i / width) & 3) << 2) | ((i % width) & 3)];
+      const level = (channel: number) => Math.max(0, Math.min(255, pixels[i * 4 + channel] + moved));
+      out[i] = this.indexOf(level(0), level(1), level(2));
+    }
   }
 
   private box(bins: Uint32Array): Box {

@@ -157,9 +157,7 @@ async function loop(request: SceneRequest, progress: (done: number) => void, sig
     const writer = new GifWriter(width, height, palette.colours, Math.round(100 / plan.fps));
     const indices = new Uint8Array(width * height);
     for (let frame = 0; frame < plan.frames; frame++) {
-      const data = pixels(frame);
-      for (let i = 0; i < indices.length; i++)
-        indices[i] = palette.indexOf(data[i * 4], data[i * 4 + 1], data[i * 4 + 2]);
+      palette.indices(pixels(frame), width, indices);
       writer.add(indices);
       progress(0.15 + (0.85 * (frame + 1)) / plan.frames);
       await breathe(signal);
