@@ -123,6 +123,22 @@ describe('the editor’s own undo', () => {
     expect(store.state.document.value.keyPoses.map(({ time }) => time)).toEqual([2.2, 4]);
   });
 
+  it('stays in the editor where a locked key pose has its place', async () => {
+    const { store, draft } = await editor();
+    store.addKey(REST, 2, { exact: true });
+    store.toggleLock();
+    store.seek(2);
+    store.setJointDegrees(CHEST, [0, 12, 0]);
+    const shape = draft().rotations;
+    store.keepDraft();
+    expect(draft().rotations).toEqual(shape);
+    store.dropDraftAt(2);
+    expect(draft().rotations).toEqual(shape);
+    store.dropDraftAt(4);
+    expect(store.state.draft.value).toBeNull();
+    expect(store.state.document.value.keyPoses.map(({ time }) => time)).toEqual([2, 4]);
+  });
+
   it('does not open a locked key pose', async () => {
     const { store } = await editor();
     store.keepDraft();

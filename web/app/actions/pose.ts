@@ -34,6 +34,11 @@ export function poseActions(context: Context, keys: Keys, math: PoseMath) {
   };
   const noDance = () => context.notify('info', 'There is no dance to take a pose from yet: generate one first.');
 
+  /** Closes the editor where the draft has become a key pose; where a locked one is in its place it stays open. */
+  const placed = (id: string) => {
+    if (id) desk.keep(id);
+  };
+
   return {
     ...poseShapeActions(context, desk, math),
     ...poseClipboardActions(context, desk, math),
@@ -147,7 +152,7 @@ export function poseActions(context: Context, keys: Keys, math: PoseMath) {
       } else if (state.duration.value === 0) {
         context.notify('info', 'Drop a song first: poses are placed on its beats.');
       } else {
-        desk.keep(keys.addKey(draft.rotations, services.player.time(), { name: draft.name || 'My pose' }));
+        placed(keys.addKey(draft.rotations, services.player.time(), { name: draft.name || 'My pose' }));
       }
     },
 
@@ -158,7 +163,7 @@ export function poseActions(context: Context, keys: Keys, math: PoseMath) {
       if (!draft) return;
       const copy = state.document.value.keyPoses.some((key) => key.id === draft.keyId);
       const id = keys.addKey(draft.rotations, time, { name: draft.name || 'My pose', exact: true });
-      if (!copy) desk.keep(id);
+      if (!copy) placed(id);
     },
 
     /** Leaves the editor; what was changed in it can be brought back. */
