@@ -192,6 +192,18 @@ test('key poses by keyboard alone: walk, select, copy, lock, strength, distribut
   await open(page);
   const grid = await beats(page);
   await place(page, [grid[2], grid[3], grid[8]]);
+  // What comes after a deleted one has the keyboard, at the end what comes before.
+  for (const [gone, next] of [
+    [0, 1],
+    [2, 1],
+  ]) {
+    await page.locator('.key-pose').nth(gone).focus();
+    const label = await page.locator('.key-pose').nth(next).getAttribute('aria-label');
+    await page.keyboard.press('Delete');
+    await expect(page.locator(':focus')).toHaveAttribute('aria-label', label!);
+    await page.keyboard.press('Control+z');
+  }
+
   await key(page, 1).focus();
   await page.keyboard.press('Shift+ArrowDown');
   expect(await chosen(page)).toEqual(['k1', 'k2']);

@@ -54,6 +54,17 @@ export function KeyButton(props: { pose: KeyPose; width: number; chosen: boolean
     if (id) focusedKey.value = id;
   };
 
+  /** Deletes the selected ones; what comes after this one, else before it, has the keyboard then, else the playhead. */
+  const remove = () => {
+    if (!chosen) store.selectKey(pose.id);
+    store.deleteKeys();
+    const left = store.state.document.value.keyPoses;
+    if (left.some(({ id }) => id === pose.id)) return;
+    const next = left.find(({ time }) => time > pose.time) ?? left.at(-1);
+    if (next) walk(next.id, false);
+    else document.querySelector<HTMLElement>('.playhead-grip')?.focus();
+  };
+
   const onKeyDown = (event: KeyboardEvent) => {
     const { key, shiftKey } = event;
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
@@ -66,10 +77,10 @@ export function KeyButton(props: { pose: KeyPose; width: number; chosen: boolean
       ArrowDown: () => walk(store.neighbourOf(pose.id, 1), shiftKey),
       Home: () => walk(first(), shiftKey),
       End: () => walk(last(), shiftKey),
-      Enter: () => (shiftKey ? (own(), store.deleteKeys()) : store.editKey(pose.id)),
+      Enter: () => (shiftKey ? remove() : store.editKey(pose.id)),
       ' ': () => store.selectKey(pose.id, true),
-      Delete: () => (own(), store.deleteKeys()),
-      Backspace: () => (own(), store.deleteKeys()),
+      Delete: remove,
+      Backspace: remove,
     };
     let run = plain ? acts[key] : undefined;
     if (matches(event, 'Mod+D')) run = () => toCopies(() => store.duplicateKeys());
