@@ -66,7 +66,10 @@ describe('files dropped together', () => {
     expect(store.notify).not.toHaveBeenCalled();
     openDropped(store as unknown as Store, [one, two]);
     expect(store.dropSong.mock.calls).toEqual([[one], [one]]);
-    expect(store.notify).toHaveBeenCalledWith('info', expect.stringContaining('Only “one.wav” of these 2 files'));
+    expect(store.notify).toHaveBeenCalledWith(
+      'info',
+      expect.stringContaining('Of these 2 files only the first, “one.wav”'),
+    );
     openDropped(store as unknown as Store, []);
     expect(store.dropSong).toHaveBeenCalledTimes(2);
   });

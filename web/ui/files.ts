@@ -21,7 +21,10 @@ export function openDropped(store: Store, files: readonly File[]): void {
   if (files.length === 0) return;
   openFile(store, files[0]);
   if (files.length === 1) return;
-  store.notify('info', `Only “${files[0].name}” of these ${files.length} files is opened: drop one at a time.`);
+  store.notify(
+    'info',
+    `Of these ${files.length} files only the first, “${files[0].name}”, is read: drop one at a time.`,
+  );
 }
 
 /** JSON of ours is a project, poses or a dance: what it is stands inside. */
