@@ -1,6 +1,6 @@
 /** What axe cannot tell: the way of the Tab key, the ring of the focus, reduced motion, forced colours. axe itself runs in panels.spec.ts. */
 import { expect, test, type Page } from '@playwright/test';
-import { loadSong, open } from './support/page';
+import { dropFile, loadSong, open } from './support/page';
 import { wav } from './support/songs';
 import { dismissAll, STATES } from './support/states';
 import { serveTinyModel } from './support/tiny';
@@ -166,6 +166,20 @@ test('dialogs and menus take the keyboard, keep it to themselves, and give it ba
   await page.keyboard.press('Shift+F10');
   await expect.poll(() => inside('.pose-menu')).toBe(true);
   await page.keyboard.press('Escape');
+  await expect(tile).toBeFocused();
+
+  // From a message that is dismissed it goes to the next one, and back to where it was.
+  await dismissAll(page);
+  for (const name of ['one.txt', 'two.txt']) await dropFile(page, Buffer.from('no song'), name);
+  const dismiss = page.locator('.notice').getByRole('button', { name: 'Dismiss' });
+  await expect(page.getByRole('alert')).toHaveCount(2);
+  await tile.focus();
+  await dismiss.first().focus();
+  for (let left = await dismiss.count(); left > 0; left--) {
+    await expect(page.locator('.notice :focus')).toHaveCount(1);
+    await page.keyboard.press('Enter');
+    await expect(dismiss).toHaveCount(left - 1);
+  }
   await expect(tile).toBeFocused();
 });
 

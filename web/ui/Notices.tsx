@@ -1,3 +1,4 @@
+import { useRef } from 'preact/hooks';
 import { Icon } from './Icon';
 import { UpdateNotice } from './share/UpdateNotice';
 import { useStore } from './store-context';
@@ -5,9 +6,34 @@ import { useStore } from './store-context';
 /** Messages to the visitor; errors stay until dismissed. */
 export function Notices() {
   const store = useStore();
+  const region = useRef<HTMLDivElement>(null);
+  /** Where the keyboard was before it came here. */
+  const before = useRef<HTMLElement | null>(null);
+
+  /** Takes a message away; a keyboard that was in it goes to the next one, and back from the last. */
+  const dismiss = (id: number, button: HTMLElement) => {
+    const all = [...region.current!.querySelectorAll<HTMLElement>('.dismiss')];
+    const own = button.closest('.notice')!;
+    const held = own.contains(document.activeElement);
+    const other = all.filter((each) => !own.contains(each));
+    const next =
+      other.find((each) => own.compareDocumentPosition(each) & Node.DOCUMENT_POSITION_FOLLOWING) ?? other.at(-1);
+    store.dismiss(id);
+    if (held) (next ?? before.current)?.focus();
+  };
+
   return (
     <>
-      <div class="notices" role="region" aria-label="Messages">
+      <div
+        class="notices"
+        role="region"
+        aria-label="Messages"
+        ref={region}
+        onFocusCapture={({ relatedTarget }) => {
+          if (relatedTarget instanceof HTMLElement && !region.current!.contains(relatedTarget))
+            before.current = relatedTarget;
+        }}
+      >
         {store.state.elsewhere.value && (
           <div class="notice info elsewhere" role="status">
             <Icon name="info" />
@@ -26,15 +52,20 @@ export function Notices() {
               <button
                 type="button"
                 class="secondary"
-                onClick={() => {
-                  store.dismiss(id);
+                onClick={({ currentTarget }) => {
+                  dismiss(id, currentTarget);
                   action.run();
                 }}
               >
                 {action.label}
               </button>
             )}
-            <button type="button" class="tool" aria-label="Dismiss" onClick={() => store.dismiss(id)}>
+            <button
+              type="button"
+              class="tool dismiss"
+              aria-label="Dismiss"
+              onClick={({ currentTarget }) => dismiss(id, currentTarget)}
+            >
               <Icon name="close" size={16} />
             </button>
           </div>
