@@ -7,6 +7,7 @@ import { blendInto, turned } from './motion-blend';
 import { seedMotion } from './seed';
 import { JOINT_COUNT } from './skeleton';
 import { spec } from './spec';
+import { limitTurns } from './turn-limit';
 import type { Features, Motion } from './types';
 import { windowInputs, type RunWindow, type WindowSpan } from './window-plan';
 import type { GenerationRequest } from './windows';
@@ -66,6 +67,7 @@ export async function addWindow(
   if (rows.length !== wanted)
     throw new Error(`The model gave ${rows.length} numbers for a window instead of ${wanted}.`);
   const made = fromLocalRows(rows, frame);
+  limitTurns(made);
   const overlap = before ? before.end - span.start : 0;
   blendInto(made, 0, raw, start, overlap);
   copyFrames(made, overlap, made.frames, raw, start + overlap);
