@@ -8,7 +8,7 @@ const keys = (page: Page) => page.evaluate(() => window.posebeat.document().keyP
 
 /** Opens the page with a song and waits until poses can be suggested. */
 async function withSong(page: Page) {
-  await open(page, '?backend=wasm');
+  await open(page, '?backend=wasm', { ahead: true });
   const song = await loadSong(page, SONG);
   await expect(page.getByRole('button', { name: 'Suggest', exact: true })).toBeEnabled();
   return song;
@@ -30,7 +30,10 @@ test('an empty timeline is filled with poses on beats, around an own one; one al
   page,
 }) => {
   const errors = collectErrors(page);
+  // Unasked, while the song is listened to.
+  const model = page.waitForRequest('**/models/suggest.onnx*');
   const song = await withSong(page);
+  await model;
   await expect(page.getByRole('button', { name: 'Suggest key poses' })).toBeVisible();
   const own = fourPoses()[0];
   await page.evaluate((rotations) => window.posebeat.setKeyPoses([{ time: 5.1, rotations }]), own);
